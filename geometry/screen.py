@@ -202,11 +202,8 @@ class Screen:
         return arrays
 
     def _new_arrays(self, radius: float) -> PathgraphArrays:
-        """Return the pathgraph of a body of that radius (squares; 0 for a point) in new, writable arrays.
-
-        They hold places, clearances, end nodes, lengths and points of its nodes and edges, in squares, screen frame.
-        Raises ValueError when the radius is negative or no finite number.
-        """
+        """Return the pathgraph of a body of that radius (squares; 0 for a point) in new, writable arrays."""
+        # Raises ValueError when the radius is negative or no finite number.
         state, _, bones = self._skeleton_at(least_squared_clearance(radius))
         return build_pathgraph_arrays(self._square, state, bones)
 
@@ -370,11 +367,7 @@ class Screen:
 
     @cached_property
     def _walls(self) -> Walls:
-        """The floor as triangles between the corners of its walls, found when it is first asked for.
-
-        It holds the corners (x, y) in squares from the south-west corner of the screen, the triangles, and the edges
-        that two triangles share, with their squared lengths and whether each is a neck (shorter than all beside it).
-        """
+        """The floor as triangles between the corners of its walls, found when it is first asked for."""
         return find_walls(self.free)
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
@@ -398,14 +391,7 @@ class Screen:
         return find_parts(self.free, passages)
 
     def _checked(self, point: Point, name: str) -> tuple[float, float]:
-        """Return a point as two floats; raise ValueError when it is no (x, y) in a free square of the screen.
-
-        Parameters
-        ----------
-        point : (x, y) in squares from the south-west corner. A point on a border between squares lies in the one to the
-            north and east, so that the north and the east edge of the screen count as blocked.
-        name : what the message calls it.
-        """
+        """Return a point as two floats; raise ValueError when it is no (x, y) in a free square of the screen."""
         try:
             x, y = map(float, point)
         except (TypeError, ValueError):
@@ -417,43 +403,18 @@ class Screen:
         return x, y
 
     def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
-        """Take memory for squared clearances of that type of integers, and for the states of the skeleton.
-
-        ``kind`` is np.int16 or np.int32. Sets ``_square``, (rows + 2, columns + 2), and ``_words``, eight cells a word,
-        both with arbitrary values. ``_tenant`` keeps them from being used again as long as the screen lives.
-        """
+        """Take memory for squared clearances of that type of integers, and for the states of the skeleton."""
         self._tenant = Tenant()
         self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
 
     def _survey(self, grid: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """Measure all clearances of free squares; return the skeleton (twice: by cells, by words) and its graph.
-
-        Fills ``_square`` and ``_words``.
-
-        Parameters
-        ----------
-        grid : (rows, columns) bool, the free squares.
-
-        Returns
-        -------
-        The states (rows + 2, columns + 2) uint8 (bits 1, 2, 4, 8: links to the east, north, west, south; 0 off the
-        skeleton), the same memory as uint64 of eight cells each, and the graph: the cells of the nodes, ascending, and
-        of each chain its two ends (4 times the node plus the direction, 0 east to 3 south), its lowest cell and its
-        number of steps; cells are flat indices, row * width + column in the padded screen.
-        """
+        """Measure all clearances of free squares; return the skeleton (twice: by cells, by words) and its graph."""
         state, words = new_state(self._square.shape, self._words)
         survey(grid, self._square, state, words)
         return state, words, contract(self._square, state, words)
 
     def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
-        """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them.
-
-        ``level`` is in half squares squared, from 1 (all free squares: for a point) on: the higher, the larger the
-        body and the less floor. Returned are the states (rows + 2, columns + 2) uint8 (bits 1, 2, 4, 8: links to the
-        east, north, west, south), the same memory as uint64 of eight cells each, and the graph: the cells of the nodes,
-        ascending, and of each chain its two ends (4 times the node plus the direction, 0 east to 3 south), its lowest
-        cell and its number of steps; cells are flat indices, row * width + column in the padded screen.
-        """
+        """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them."""
         found = self._skeletons.get(level)
         if found is None:
             state, words = new_state(self._square.shape)
@@ -462,13 +423,7 @@ class Screen:
         return found
 
     def _chains_at(self, level: int) -> Chains:
-        """Return the graph of that level with the cells of its chains (flat indices, padded); keep it.
-
-        It has the cell of each node, the chains that leave each node, and for each chain its two nodes, its cells and
-        its lowest cell.
-
-        ``level`` is the least squared clearance, in half squares, of a square where the body may be.
-        """
+        """Return the graph of that level with the cells of its chains (flat indices, padded); keep it."""
         found = self._chains.get(level)
         if found is None:
             state, _, bones = self._skeleton_at(level)
@@ -476,13 +431,8 @@ class Screen:
         return found
 
     def _ask(self, radius: float) -> LayerQueries:
-        """Return the object that answers questions for a body of that radius (squares; 0 for a point); keep it.
-
-        It holds the layer (the free space of that body: skeleton, chains, strips, landmarks), the least squared
-        clearance of its squares, and the scratch of its searches.
-
-        Raises ValueError when the radius is negative or no finite number.
-        """
+        """Return the object that answers questions for a body of that radius (squares; 0 for a point); keep it."""
+        # Raises ValueError when the radius is negative or no finite number.
         found = self._questions.get(radius)
         if found is None:
             key = least_squared_clearance(radius), radius > 0.0
@@ -494,11 +444,7 @@ class Screen:
 
 
 def checked_grid(free: ArrayLike) -> Bools:
-    """Return the free squares as a (rows, columns) array of bool; raise ValueError when they are none.
-
-    That is when ``free`` has not two dimensions, is not of bool, has more than 32766 squares a side or no free square.
-    An array of bool is returned itself, not a copy.
-    """
+    """Return the free squares as a (rows, columns) array of bool; raise ValueError when they are none."""
     grid = np.asarray(free)
     if grid.ndim != 2:
         raise ValueError(f"free must have two dimensions (rows, columns), not {grid.ndim}")

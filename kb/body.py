@@ -106,24 +106,7 @@ class Body(Protocol):
     """The only way from the mind to the world: what moves the robot, and senses for it, has these two methods."""
 
     def wake(self) -> Impression:
-        """Return the first impression, at the point where the robot woke: the origin of the robot frame.
-
-        It holds the 160 gray levels (0 to 7) of the retina's fields and the colours of the 8 adjacent squares,
-        clockwise from north in the robot frame.
-        """
+        """Return the first impression, at the point where the robot woke: the origin of the robot frame."""
 
     def act(self, command: Command) -> Impression:
-        """Carry out one command as far as the world allows, and return the impression at its end.
-
-        Parameters
-        ----------
-        command : Command
-            A Move, Grasp, Push, Turn or Release; lengths in squares, angles in degrees, directions in the robot frame.
-
-        Returns
-        -------
-        Impression
-            What the robot senses when it has come to a halt: the 160 gray levels (0 to 7) of the retina's fields and
-            the colours of the 8 adjacent squares, clockwise from north in the robot frame. It does not say whether the
-            command succeeded: that must be seen.
-        """
+        """Carry out one command as far as the world allows, and return the impression at its end."""

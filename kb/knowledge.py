@@ -40,22 +40,7 @@ from kb.world.objects import (
 
 
 class Knowledge:
-    """The knowledge of one robot: what it remembers, and the world model that follows from it.
-
-    Parameters
-    ----------
-    rules : tuple of Path
-        Files with the user's own encodings, solved together with each of kb/asp; () for none.
-
-    Attributes
-    ----------
-    tracker : Tracker
-        The localisation tracker: frame, place, track, map and objects that were held.
-    rules : tuple of Path
-        As given.
-    objects : tuple of Node
-        The objects of the newest world model, by the number in their names; () before the first impression.
-    """
+    """The knowledge of one robot: what it remembers, and the world model that follows from it."""
 
     def __init__(self, rules: tuple[Path, ...] = ()) -> None:
         self.tracker = Tracker()
@@ -68,65 +53,15 @@ class Knowledge:
 
     @property
     def memory(self) -> TrackerState:
-        """Return what the localisation tracker believes now: frame, place (map frame), map, track and held objects.
-
-        The frame's angle is that by which Utak's own frame is turned against the map frame, in degrees,
-        counter-clockwise. The track is all observations, oldest first, each with its place (east, north) in squares,
-        Utak's own frame. Map and held objects are in the map frame; held objects are all that were ever held, by name,
-        and `in_hand` is the name of the one in hand or None.
-        """
+        """Return what the localisation tracker believes now: frame, place (map frame), map, track and held objects."""
         return self.tracker.state
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
-        """Take in the first impression.
-
-        Parameters
-        ----------
-        impression : Impression
-            The first impression, on waking.
-
-        Returns
-        -------
-        model : WorldModel
-            What is believed after it: the frame, the robot's place (x, y) in squares, map frame, the map view, its
-            regions, and the objects as nodes. An empty floor about the robot by default, changed as the impression
-            says.
-        accommodated : Accommodation
-            How the impression was explained: the chosen explanation, and the status (predicted, explained or noise) of
-            each of its 160 fields.
-
-        Raises
-        ------
-        BadInputError
-            The user's encodings are wrong.
-        """
+        """Take in the first impression."""
         return self._update(impression, self.tracker.wake(impression))
 
     def perceive(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodation]:
-        """Take in the impression that followed a command.
-
-        Parameters
-        ----------
-        command : Command
-            The command that was given.
-        impression : Impression
-            The impression after it.
-
-        Returns
-        -------
-        model : WorldModel
-            The new world model: the frame, the robot's place (x, y) in squares, map frame, the map view, its regions,
-            and the objects as nodes. When localisation failed with empty hands, the map is forgotten and a new one
-            begun.
-        accommodated : Accommodation
-            The chosen explanation of what happened (such as predicted, blocked or slipped), and the status (predicted,
-            explained or noise) of each of the 160 fields. Its kind is `lost` when the map was forgotten.
-
-        Raises
-        ------
-        BadInputError
-            The user's encodings are wrong.
-        """
+        """Take in the impression that followed a command."""
         if isinstance(command, Grasp):
             self._grasp(command.direction)
         accommodated = self.tracker.accommodate(command, impression)
@@ -135,31 +70,7 @@ class Knowledge:
         return self._update(impression, accommodated)
 
     def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodation]:
-        """Forget all but the track, and begin a new map with the newest impression.
-
-        The map, the objects that were held and the names of patches are forgotten; the places where impressions were
-        received are kept, in the robot frame.
-
-        Parameters
-        ----------
-        impression : Impression
-            The newest impression.
-        lost : bool
-            Whether this is because localisation failed: the explanation is then of the kind `lost`, else `anew`.
-
-        Returns
-        -------
-        model : WorldModel
-            The new world model, of the new map: the frame, the robot's place (x, y) in squares, map frame, the map
-            view, its regions, and the objects as nodes.
-        accommodated : Accommodation
-            How the impression was explained, and the status of each of its 160 fields.
-
-        Raises
-        ------
-        BadInputError
-            The user's encodings are wrong.
-        """
+        """Forget all but the track, and begin a new map with the newest impression."""
         self.tracker = self.tracker.anew()
         self._names.forget()
         woken = self.tracker.wake(impression)
@@ -167,11 +78,7 @@ class Knowledge:
         return self._update(impression, woken)
 
     def _grasp(self, direction: str) -> None:
-        """Believe that an object is in hand, if one of known outline is, or is felt, on the adjacent square.
-
-        `direction` is one of the eight DIRECTIONS of the robot frame. Changes the tracker alone; an object that was
-        held before is preferred. Nothing happens when no such object is there, or while another one is in hand.
-        """
+        """Believe that an object is in hand, if one of known outline is, or is felt, on the adjacent square."""
         memory = self.memory
         there = within_reach(self.objects, self._touches, memory.frame, memory.occupancy, memory.square, direction)
         node = min(there, key=lambda n: n.name not in memory.held_objects, default=None)
@@ -179,12 +86,7 @@ class Knowledge:
             self.tracker.grasp(grasped(node))
 
     def _update(self, impression: Impression, accommodated: Accommodation) -> tuple[WorldModel, Accommodation]:
-        """Return the world model after an impression that localisation has taken in already.
-
-        `accommodated`, how localisation explained it and the status of each of the 160 fields, is returned as given.
-        The model holds the objects, those with the lower number in their names first. Changes the touches, the names of
-        objects, the completions, the tracker's held objects and `objects`.
-        """
+        """Return the world model after an impression that localisation has taken in already."""
         if accommodated.explanation.remaps:  # all squares are those of another frame now
             self._touches.forget_squares()
             self._completions = NO_COMPLETION_SUMMARY
@@ -195,12 +97,7 @@ class Knowledge:
         return self._with_objects(model), accommodated
 
     def _feel(self, impression: Impression) -> None:
-        """Take in the colours of the 8 adjacent squares, except on squares that moved or held objects may cover.
-
-        What was in hand and never moved is given up as one thing when two colours are felt on it: its squares are
-        again what they were seen to be. `impression` has the colours, clockwise from north in the robot frame. Changes
-        the touches, and the tracker's held objects.
-        """
+        """Take in the colours of the 8 adjacent squares, except on squares that moved or held objects may cover."""
         memory = self.memory
         loads = held_or_moved(memory.held_objects, memory.in_hand)
         held = {square for load in loads.values() for square in load.possible.squares()}
@@ -212,13 +109,7 @@ class Knowledge:
                 self.tracker.withdraw(name)
 
     def _map(self) -> MapView:
-        """Return the map view: counts solved, and probabilities of open squares from completions drawn anew.
-
-        The view holds (rows, columns) arrays, row 0 in the south, and the square of the map frame at [0, 0]: the
-        probability of each square to be occupied, its state as the counts settle it, and which squares were seen. A
-        completion is a sampled map that agrees with all counts of the impressions. The new ones are kept for the next
-        call, and by the tracker.
-        """
+        """Return the map view: counts solved, and probabilities of open squares from completions drawn anew."""
         memory = self.memory
         counted = memory.occupancy.view(memory.track[: len(memory.been)])
         self._completions = summarise_completions(counted, self._completions)
@@ -233,14 +124,7 @@ class Knowledge:
         )
 
     def _regions(self, view: MapView) -> MapRegions:
-        """Return the regions of the map and what each of them is, as seen and as felt.
-
-        Squares that are occupied with a probability above MAX_FREE_PROBABILITY form occupied regions, all other seen
-        squares free ones. The result holds the regions `part<n>`, the number n of each square's region on the arrays of
-        the map view (0 where nothing was seen), and the confidences in percent in what each region is. Things felt to
-        stand against the verge are regions of their own, with the greatest numbers, and so are the parts of an isolated
-        region on which two colours were felt.
-        """
+        """Return the regions of the map and what each of them is, as seen and as felt."""
         occupied = view.seen & (view.probability > MAX_FREE_PROBABILITY)
         settled = view.state != OPEN
         percept, labels = map_regions(occupied, view.seen, settled, view.probability)
@@ -257,11 +141,7 @@ class Knowledge:
     def _world(
         self, impression: Impression, accommodated: Accommodation, view: MapView, regions: MapRegions
     ) -> WorldModel:
-        """Return the world model without objects, from the tracker, the touches, the map view and its regions.
-
-        It holds the frame, the robot's place (map frame, in squares), the view, the regions and what they are taken
-        for, and the colours felt. `accommodated` tells whether fields of the impression contradict what is believed.
-        """
+        """Return the world model without objects, from the tracker, the touches, the map view and its regions."""
         memory = self.memory
         return WorldModel(
             memory.frame,
@@ -288,12 +168,7 @@ class Knowledge:
         )
 
     def _with_objects(self, model: WorldModel) -> WorldModel:
-        """Return a world model with its objects: those seen on the map, and those that were held.
-
-        Those that were held are laid upon the map as regions of their own, each with the greatest number so far. The
-        objects are nodes, sorted by the number in their names. Also keeps all objects in `objects`, by
-        number, and gives the tracker those of held objects whose shape had to be measured anew.
-        """
+        """Return a world model with its objects: those seen on the map, and those that were held."""
         held = self.memory.held_objects
         objects = seen_objects(
             model, lambda patches: self._names.assign(patches, held), self._measurer, self._touches, self.rules

@@ -15,66 +15,39 @@ from planner.sights.frontiers import Viewpoint
 
 @dataclass(frozen=True)
 class Act:
-    """A command to give now.
+    """A command to give now."""
 
-    Attributes
-    ----------
-    command : what the body shall do, in the robot's own frame.
-    why : the reason, in words.
-    unplanned_push : the same push in squares, map frame, when no plan asks for it; None for commands of a plan. The
-        plan executor must be told when such a command is given (PlanExecutor.depart).
-    """
-
-    command: Command
-    why: str
+    command: Command  # what the body shall do, in the robot's own frame
+    why: str  # the reason, in words
+    # The same push in squares, map frame, when no plan asks for it; None for commands of a plan. The plan executor must
+    # be told when such a command is given (PlanExecutor.depart).
     unplanned_push: Translate | None = None
 
 
 @dataclass(frozen=True)
 class Go:
-    """A square to walk to.
+    """A square to walk to."""
 
-    Attributes
-    ----------
-    square : one flat index (row * columns + column) into the view's arrays, (1,).
-    place : the point (x, y) at which to halt, in squares, map frame.
-    why : the reason, in words.
-    """
-
-    square: SquareIndices
-    place: XY
-    why: str
+    square: SquareIndices  # one flat index (row * columns + column) into the view's arrays, (1,)
+    place: XY  # the point (x, y) at which to halt, in squares, map frame
+    why: str  # the reason, in words
 
 
 @dataclass(frozen=True)
 class See:
-    """Squares that must be seen before the way over them is relied upon.
+    """Squares that must be seen before the way over them is relied upon."""
 
-    Attributes
-    ----------
-    viewpoint : the squares from which they can be seen (flat indices on the arrays of the view), and the reason.
-    """
-
+    # The squares from which they can be seen (flat indices on the arrays of the view), and the reason
     viewpoint: Viewpoint
 
 
 def command_of(motion: Motion, model: WorldModel) -> Command:
-    """Return the command for a motion of the held object: a Turn for a Rotate, else a Push.
-
-    Parameters
-    ----------
-    motion : a push (dx, dy) in squares along the axes of the map frame, or a turn in degrees.
-    """
+    """Return the command for a motion of the held object: a Turn for a Rotate, else a Push."""
     if isinstance(motion, Rotate):
         return Turn(motion.degrees)
     return Push(*model.frame.to_utak(motion.dx, motion.dy))
 
 
 def unplanned_act(push: Translate, why: str, model: WorldModel) -> Act:
-    """Return the act of a push that no plan asks for; its `unplanned_push` is that push.
-
-    Parameters
-    ----------
-    push : (dx, dy) in squares along the axes of the map frame.
-    """
+    """Return the act of a push that no plan asks for; its `unplanned_push` is that push."""
     return Act(command_of(push, model), why, push)

@@ -40,10 +40,7 @@ def avoidances(task: Task) -> Iterator[tuple[str, Fact]]:
 
 
 def in_view_frame(region: Any, frame: Frame, west: float, south: float) -> Any:
-    """Return a region (shapely geometry, in squares) of the robot's own frame in the view frame.
-
-    west, south : the corner of the view's arrays, in squares, map frame.
-    """
+    """Return a region (shapely geometry, in squares) of the robot's own frame in the view frame."""
 
     def convert(points: Any) -> Any:
         x, y = frame.places_from_utak(points[:, 0], points[:, 1])
@@ -58,11 +55,7 @@ def in_robot_frame(shape: Any, frame: Frame) -> Any:
 
 
 def region_squares(region: Any, shape: tuple[int, ...], wholly: bool, margin: int = 0) -> Bools:
-    """Return the squares that a region (shapely geometry, in squares, view frame) meets.
-
-    (rows + 2 margin, columns + 2 margin) bool; square [margin, margin] is square [0, 0] of the view, whose arrays have
-    `shape`. wholly : whether a square counts only when all of it is in the region.
-    """
+    """Return the squares that a region (shapely geometry, in squares, view frame) meets."""
     rows, columns = shape[0] + 2 * margin, shape[1] + 2 * margin
     areas = covered_areas(affinity.translate(region, margin, margin), columns, rows)
     mask: Bools = areas > (1.0 - MIN_COVERED if wholly else MIN_COVERED)
@@ -70,14 +63,7 @@ def region_squares(region: Any, shape: tuple[int, ...], wholly: bool, margin: in
 
 
 def swept_region(before: Any, after: Any, degrees: float, pivot: XY) -> Any:
-    """Return what an object covers while it is moved once: pushed straight, or turned about the robot.
-
-    Parameters
-    ----------
-    before, after : its outlines (shapely Polygon), in squares, any one frame.
-    degrees : by how much it was turned, counter-clockwise positive; 0 for a push.
-    pivot : where the robot stood, (x, y), in the same frame.
-    """
+    """Return what an object covers while it is moved once: pushed straight, or turned about the robot."""
     if abs(degrees) > SAME_PLACE:
         steps = math.ceil(abs(degrees) / TURN_STEP)
         parts = [affinity.rotate(before, degrees * n / steps, origin=shapely.Point(*pivot)) for n in range(steps)]

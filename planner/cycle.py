@@ -23,101 +23,52 @@ from planner.journal import Journal
 
 @dataclass(frozen=True)
 class Options:
-    """Options of the robot.
+    """Options of the robot."""
 
-    Attributes
-    ----------
-    paths : the path-finder: skeleton, visibility or grid.
-    kb_files : paths of the user's own encodings; none by default.
-    max_steps : the number of commands after which the robot gives up.
-    pull : whether a held object may be pulled; False when it may only be pushed.
-    """
-
-    paths: str = "skeleton"
-    kb_files: tuple[str, ...] = ()
-    max_steps: int = 200
-    pull: bool = True
+    paths: str = "skeleton"  # the path-finder: skeleton, visibility or grid
+    kb_files: tuple[str, ...] = ()  # paths of the user's own encodings; none by default
+    max_steps: int = 200  # the number of commands after which the robot gives up
+    pull: bool = True  # whether a held object may be pulled; False when it may only be pushed
 
 
 class StepReport(NamedTuple):
-    """One turn of the cycle.
+    """One turn of the cycle."""
 
-    Attributes
-    ----------
-    command : the command that was given; None on waking.
-    impression : what the body returned after it.
-    belief : what is believed since, ready for JSON, as `kb.world.facts.belief` returns it.
-    why : the reason of the command, in words.
-    """
-
-    command: Command | None
-    impression: Impression
-    belief: dict[str, Any]
-    why: str
+    command: Command | None  # the command that was given; None on waking
+    impression: Impression  # what the body returned after it
+    belief: dict[str, Any]  # what is believed since, ready for JSON, as `kb.world.facts.belief` returns it.
+    why: str  # the reason of the command, in words
 
 
 class Verdict(NamedTuple):
-    """The end of the task, as the robot judges it.
+    """The end of the task, as the robot judges it."""
 
-    Attributes
-    ----------
-    believed : whether the robot believes that the task is done.
-    verdict : the kind of the end.
-    reason : why, in words.
-    """
-
-    believed: bool
-    verdict: TaskVerdict
-    reason: str
+    believed: bool  # whether the robot believes that the task is done
+    verdict: TaskVerdict  # the kind of the end
+    reason: str  # why, in words
 
 
 class _Before(NamedTuple):
-    """The newest impression, and all that the mind consisted of before it.
+    """The newest impression, and all that the mind consisted of before it."""
 
-    Attributes
-    ----------
-    command, impression, why : the command, the impression after it, and the command's reason.
-    options, knowledge, decider, journal : copies of what the robot had then.
-    must_restart, has_restarted : whether all beliefs were to be given up, and whether they were.
-    """
-
-    command: Command | None
+    command: Command | None  # the command, the impression after it, and the command's reason
     impression: Impression
     why: str
-    options: Options
+    options: Options  # copies of what the robot had then
     knowledge: Knowledge
     decider: Decider
     journal: Journal
-    must_restart: bool
+    must_restart: bool  # whether all beliefs were to be given up, and whether they were
     has_restarted: bool
 
 
 class Robot:
-    """The mind of Utak. The numbers in comments are the steps of the paper.
+    """The mind of Utak. The numbers in comments are the steps of the paper."""
 
-    Whatever takes in an impression raises BadInputError when the user's encodings are wrong.
-
-    Attributes
-    ----------
-    body : what senses and acts.
-    options : how the robot works.
-    knowledge : what the robot knows; model : what it believes now, set on waking. Only this class changes the two.
-    decider : what chooses the commands.
-    decision : what is done next, set on waking.
-    finished, verdict : whether and how the task ended.
-    steps : how many commands were given.
-    """
+    # Whatever takes in an impression raises BadInputError when the user's encodings are wrong.
 
     def __init__(self, body: Body, task: Task, options: Options | None = None, decider: Decider | None = None) -> None:
-        """Make a robot that sleeps.
-
-        Parameters
-        ----------
-        body : what senses and acts.
-        task : the goals and what is said of their parameters.
-        options : how the robot works; the defaults of Options if None.
-        decider : what chooses the commands; a new one of this task if None. It belongs to this robot from now on.
-        """
+        """Make a robot that sleeps."""
         self.body = body
         self.options = options or Options()
         rules = tuple(Path(file) for file in self.options.kb_files)
@@ -143,48 +94,21 @@ class Robot:
         return self._receive(None, self.body.wake(), "the robot wakes")  # (2)
 
     def step(self) -> StepReport:
-        """Give the decided command, perceive, and decide anew (steps 8 to 13); report what is believed after it.
-
-        Raises
-        ------
-        ValueError
-            When the task has ended.
-        """
+        """Give the decided command, perceive, and decide anew (steps 8 to 13); report what is believed after it."""
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
             raise ValueError("the run is finished")
         return self.follow(command, why)
 
     def follow(self, command: Command, why: str) -> StepReport:
-        """Give a command, perceive, and decide anew (steps 10 to 13); report what is believed after it.
-
-        The command may be another one than was decided: then the robot is led. A task that had ended goes on.
-
-        Parameters
-        ----------
-        why : the reason of the command, in words.
-        """
+        """Give a command, perceive, and decide anew (steps 10 to 13); report what is believed after it."""
         self.finished = False
         impression = self.body.act(command)  # (10)
         self.steps += 1
         return self._receive(command, impression, why)
 
     def adopt(self, task: Task, options: Options) -> StepReport:
-        """Take another task and other options from the newest impression on, and report it again, with its command.
-
-        The newest impression is interpreted anew, from what was known before it, as if task and options had been these
-        already; then the robot decides anew. With other encodings alone, the intention that it had before the
-        impression goes on. With another task, path-finder or leave to pull, what was tried is forgotten, and a held
-        object is released first. With another task, where its things began is where they are believed now. Parameters
-        that are the same, with the same claims, keep their meaning until the next reconciliation. What was concluded
-        from earlier impressions with other encodings and is remembered, such as the shape of a thing in hand, stays.
-        The limit of commands counts those already given, too.
-
-        Raises
-        ------
-        ValueError
-            When the robot has not been woken.
-        """
+        """Take another task and other options from the newest impression on, and report it again, with its command."""
         if self._before is None:
             raise ValueError("the robot has not been woken yet")
         before, rules = deepcopy(self._before), tuple(Path(file) for file in options.kb_files)
@@ -219,11 +143,7 @@ class Robot:
     def _take_in(
         self, command: Command | None, impression: Impression, why: str, decides_afresh: bool = False
     ) -> StepReport:
-        """Interpret an impression, decide what is done next, and return the report of the turn (steps 11 to 13, 8).
-
-        command : the command before the impression; None on waking.
-        decides_afresh : whether a held object is released first, because nothing is known of how it is to be carried.
-        """
+        """Interpret an impression, decide what is done next, and return the report of the turn (steps 11 to 13, 8)."""
         with record_decisions() as decisions, record_applied_rules(self._applied):
             if command is None:
                 self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
@@ -247,11 +167,7 @@ class Robot:
         self.decision = self.decider.decide(self.model, self.knowledge.memory.track)
 
     def _restart(self, impression: Impression) -> Accommodation | None:
-        """Forget all beliefs and begin anew from an impression; a held object is released first.
-
-        Returns how the impression is explained in the new map. While an object is held, only `decision` changes, to its
-        release, and None is returned: the restart follows after that.
-        """
+        """Forget all beliefs and begin anew from an impression; a held object is released first."""
         held = self.model.held
         if held is not None:
             why = f"{held} is released, because the robot forgets its map and begins anew; {self.decision.why}"

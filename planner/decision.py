@@ -7,43 +7,28 @@ from kb.body import Command
 
 
 class TaskVerdict(StrEnum):
-    """The end of a task, as episodes write it.
+    """The end of a task, as episodes write it."""
 
-    Attributes
-    ----------
-    DONE : every goal is believed to hold.
-    IMPOSSIBLE : no plan exists, whatever is still unknown.
-    POSSIBLE_IF : no plan is left, but a named open fact would allow one.
-    LIMIT : the robot gave up, and nothing is proved.
-    """
-
-    DONE = "done"
-    IMPOSSIBLE = "impossible"
-    POSSIBLE_IF = "possible_if"
-    LIMIT = "limit"
+    DONE = "done"  # every goal is believed to hold
+    IMPOSSIBLE = "impossible"  # no plan exists, whatever is still unknown
+    POSSIBLE_IF = "possible_if"  # no plan is left, but a named open fact would allow one
+    LIMIT = "limit"  # the robot gave up, and nothing is proved
 
 
 @dataclass(frozen=True)
 class Decision:
-    """The next command and its reason; or no command, and the verdict; or neither, when nothing is to be done.
+    """The next command and its reason; or no command, and the verdict; or neither, when nothing is to be done."""
 
-    Attributes
-    ----------
-    command : what the body does next, in the robot's own frame; None for none.
-    why : the reason in words.
-    verdict : how the task ended, or how it ends as far as one part of it is concerned; None while it goes on.
-    unless : the open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be
-        none.
-    proof : what proves the verdict `impossible`, in words, a clause each; that verdict is never given without.
-    near : the place (x, y) that the verdict is about, in squares, view frame (that of the arrays of the view, x =
-        column, y = row); None for no such place.
-    """
-
-    command: Command | None
-    why: str
+    command: Command | None  # what the body does next, in the robot's own frame; None for none
+    why: str  # the reason in words
+    # How the task ended, or how it ends as far as one part of it is concerned; None while it goes on
     verdict: TaskVerdict | None = None
+    # The open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be none
     unless: str | None = ""
+    # The place (x, y) that the verdict is about, in squares, view frame (that of the arrays of the view, x = column, y
+    # = row); None for no such place
     near: tuple[float, float] | None = None
+    # What proves the verdict `impossible`, in words, a clause each; that verdict is never given without
     proof: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -68,13 +53,7 @@ def nothing_to_do(why: str) -> Decision:
 
 
 def impossible(why: str, *proof: str, unless: str | None = "") -> Decision:
-    """Return the verdict `impossible`.
-
-    Parameters
-    ----------
-    proof : the facts that prove it, in words, at least one.
-    unless : as for Decision.
-    """
+    """Return the verdict `impossible`."""
     return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless, proof=proof)
 
 

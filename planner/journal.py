@@ -29,23 +29,7 @@ class Journal:
         return other
 
     def entry(self, decisions: Sequence[SolverCall], memory: TrackerState) -> dict[str, Any]:
-        """Return what the next step adds to the `belief` of an episode's line.
-
-        Parameters
-        ----------
-        decisions : the answers of encodings since the step before, in order.
-        memory : what the localisation tracker believes now.
-
-        Returns
-        -------
-        dict
-            solved: for each decision [encoding, facts, answer, about], or [encoding, [step, index]] where `solved` of
-            that step holds the same at that index. map_from: the number of the first impression on which the map rests.
-            seen_from: the places [east, north] where all impressions were received as believed now, in squares, robot
-            frame; only when they are not those of the step before with the believed place of the robot after them.
-            routes: the routes that were weighed last for the next command, as points [east, north] with whether one was
-            chosen; only when there are any.
-        """
+        """Return what the next step adds to the `belief` of an episode's line."""
         places = tuple(_rounded(place) for place in (*memory.been, *(seen.place for seen in memory.observations)))
         found: dict[str, Any] = {"solved": [self._solved(n, call) for n, call in enumerate(decisions)]}
         found["map_from"] = len(memory.been)

@@ -19,11 +19,7 @@ class PerModel(Generic[Answer]):
         self._known: dict[Any, Answer] = {}
 
     def __call__(self, goal: Fact, *arguments: Any) -> Answer:
-        """Return what the function returns; from memory where it was asked the same of the same world model.
-
-        goal : of the task.
-        arguments : further arguments, of which the last is the situation. The others are nodes, named, or values.
-        """
+        """Return what the function returns; from memory where it was asked the same of the same world model."""
         *others, situation = arguments
         assert isinstance(situation, Situation)
         if self._model is not situation.model:

@@ -50,10 +50,7 @@ def possible_doors(model: WorldModel, rooms: Rooms, rules: tuple[Path, ...]) -> 
 
 
 def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0) -> Bools:
-    """Return the squares on the necks of some doors, (rows + 2 margin, columns + 2 margin) bool.
-
-    Square [margin, margin] is square [0, 0] of the view, whose arrays have `shape`.
-    """
+    """Return the squares on the necks of some doors, (rows + 2 margin, columns + 2 margin) bool."""
     rows, columns = shape
     mask: Bools = np.zeros((rows, columns), np.bool_)
     for door in doors:
@@ -63,53 +60,38 @@ def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0)
 
 @dataclass(frozen=True)
 class Situation:
-    """All that the meaning of a goal depends on.
+    """All that the meaning of a goal depends on."""
 
-    The view frame is that of the arrays of the model's view: the map frame moved so that (0, 0) is the south-west
-    corner of square [0, 0]. An actor is "utak" for the robot, or the name of a node.
+    # The view frame is that of the arrays of the model's view: the map frame moved so that (0, 0) is the south-west
+    # corner of square [0, 0].
 
-    Attributes
-    ----------
-    model : the world model.
-    cost_maps : the world model projected on the screen, an array of squares.
-    binding : the name of the node that each parameter of the task means.
-    rooms : the rooms and doors of the floor, view frame; whatever is taken for verge bounds them.
-    corners : the corner of the known floor towards each side ("northeast", ...) of the robot frame, view frame.
-    task : the task, with its constraints.
-    rules : the user's rule files, read by every encoding.
-    track : where the robot has been, the present place last: points (x, y) of the map frame, in squares.
-    carried : by object: where its middle has been since it was first moved, as `track`.
-    closed : the names of doors that users' rules close to the robot.
-    door_prices : by the name of a door: the commands that users' rules add to a pass through it.
-    possible_doors : doors that there are if things that were seen and never felt are pieces of wall. They count where a
-        constraint or a rule is about doors: to go through one cannot be undone.
-    lenient : whether regions that the task forbids count only where a whole square lies within them, and for those
-        alone whom they are forbidden to. Then what is not possible is proved not to be, and what is possible may not
-        be.
-    as_well : by parameter of the task: other nodes that match it as well as the one that it is bound to.
-    """
-
-    model: WorldModel
-    cost_maps: CostMaps
-    binding: Mapping[str, str]
-    rooms: Rooms
+    model: WorldModel  # the world model
+    cost_maps: CostMaps  # the world model projected on the screen, an array of squares
+    binding: Mapping[str, str]  # the name of the node that each parameter of the task means
+    rooms: Rooms  # the rooms and doors of the floor, view frame; whatever is taken for verge bounds them
+    # The corner of the known floor towards each side ("northeast", ...) of the robot frame, view frame.
     corners: Mapping[str, Corner]
-    task: Task
-    rules: tuple[Path, ...] = ()
+    task: Task  # the task, with its constraints
+    rules: tuple[Path, ...] = ()  # the user's rule files, read by every encoding
+    # Where the robot has been, the present place last: points (x, y) of the map frame, in squares
     track: tuple[XY, ...] = ()
+    # By object: where its middle has been since it was first moved, as `track`
     carried: Mapping[str, tuple[XY, ...]] = field(default_factory=dict)
-    closed: frozenset[str] = frozenset()
+    closed: frozenset[str] = frozenset()  # the names of doors that users' rules close to the robot
+    # By the name of a door: the commands that users' rules add to a pass through it
     door_prices: Mapping[str, int] = field(default_factory=dict)
+    # Doors that there are if things that were seen and never felt are pieces of wall. They count where a constraint or
+    # a rule is about doors: to go through one cannot be undone.
     possible_doors: tuple[Door, ...] = ()
+    # Whether regions that the task forbids count only where a whole square lies within them, and for those alone whom
+    # they are forbidden to. Then what is not possible is proved not to be, and what is possible may not be.
     lenient: bool = False
+    # By parameter of the task: other nodes that match it as well as the one that it is bound to
     as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:
-        """The rooms that follow when everything that may be an object is one, and does not bound a room.
-
-        These are `rooms` when all verge is sure to be wall.
-        """
+        """The rooms that follow when everything that may be an object is one, and does not bound a room."""
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
@@ -141,18 +123,7 @@ class Situation:
         return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch), self.cost_maps.kept_off))
 
     def next_rooms(self, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
-        """Compute the squares of the rooms next to the room of a point, and what to look at before relying on them.
-
-        The answer is reliable when it holds both for the rooms as believed and for the rooms by sure walls alone. A
-        wall seen in part may be an object, and then the rooms are others.
-
-        (rows, columns) bool on the arrays of the view; and viewpoints, none when the answer is reliable or no room is
-        next.
-
-        Parameters
-        ----------
-        place : a point (x, y) of the map frame, in squares.
-        """
+        """Compute the squares of the rooms next to the room of a point, and what to look at before relying on them."""
         mask = self.next_to(place, self.rooms, MIN_DOOR_CONFIDENCE)
         both = mask & self.next_to(place, self.rooms_by_sure_walls, MIN_TRIED_DOOR_CONFIDENCE)
         if both.any() or not mask.any():
@@ -160,15 +131,7 @@ class Situation:
         return mask, doubtful_wall_ends(self)
 
     def likely_next_rooms(self, place: XY) -> tuple[Rooms, Bools]:
-        """Compute the squares of the rooms that likely share a door with the room of a point.
-
-        The rooms as believed come first; where they show none, the rooms by sure walls alone. With the squares, (rows,
-        columns) bool on the arrays of the view, comes the partition into rooms that was used.
-
-        Parameters
-        ----------
-        place : a point (x, y) of the map frame, in squares.
-        """
+        """Compute the squares of the rooms that likely share a door with the room of a point."""
         for rooms in (self.rooms, self.rooms_by_sure_walls):
             mask = self.next_to(place, rooms, MIN_TRIED_DOOR_CONFIDENCE)
             if mask.any():
@@ -176,12 +139,7 @@ class Situation:
         return rooms, mask
 
     def forbidden(self, actor: str) -> tuple[Door, ...]:
-        """Return the doors that the constraints of the task forbid to an actor, in the order of `rooms.doors`.
-
-        Nothing tells which door a constraint means. So an actor is kept from one sure door that it has not gone
-        through, the narrowest. While no such door is known, an object is kept from every likely door, and the robot
-        from all possible doors, however unlikely: going through a forbidden one could not be undone.
-        """
+        """Return the doors that the constraints of the task forbid to an actor, in the order of `rooms.doors`."""
         avoided = [
             sorted(self.avoided(fact), key=lambda door: door.width)[:1]
             for fact, actors in self.kept_from_doors
@@ -207,10 +165,7 @@ class Situation:
         return kept or bool(self.closed or self.door_prices)
 
     def avoided(self, fact: Fact) -> tuple[Door, ...]:
-        """Return the sure doors through which none went whom a constraint keeps from a door, in order.
-
-        fact : one of `kept_from_doors`.
-        """
+        """Return the sure doors through which none went whom a constraint keeps from a door, in order."""
         actors = dict(self.kept_from_doors)[fact] or tuple(self.carried)
         return tuple(door for door in self.rooms.sure if not any(self._passed(actor, door) for actor in actors))
 
@@ -228,10 +183,7 @@ class Situation:
         return replace(self, closed=self.closed | closed).within_shut_doors()
 
     def within_shut_doors(self, others: Iterable[Door] = ()) -> "Situation":
-        """Return the situation with cost maps on which no way leads through a door that is shut to the robot.
-
-        others : doors that count as shut, too.
-        """
+        """Return the situation with cost maps on which no way leads through a door that is shut to the robot."""
         kept_off = neck_squares((*self.shut(ROBOT), *others), self.model.labels.shape) | self.cost_maps.kept_off
         return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off)) if kept_off.any() else self
 
@@ -252,13 +204,7 @@ class Situation:
         return went_through(np.array(track).reshape(-1, 2) - (self.model.view.west, self.model.view.south), door)
 
     def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
-        """Compute the squares of the rooms that share a door with the room of a point, (rows, columns) bool.
-
-        Parameters
-        ----------
-        place : a point (x, y) of the map frame, in squares.
-        least : the least confidence of a door that counts, in percent.
-        """
+        """Compute the squares of the rooms that share a door with the room of a point, (rows, columns) bool."""
         row, column = self.model.view.locate(*place)
         return rooms.beyond(int(rooms.labels[row, column]), least)
 
@@ -266,18 +212,9 @@ class Situation:
 def regions_kept_off(
     task: Task, binding: Mapping[str, str], model: WorldModel, actor: str, margin: int = 0, lenient: bool = False
 ) -> Bools:
-    """Compute the squares that a task forbids to the robot or to an object by avoid(T, "WKT").
-
-    Plans keep objects OBJECT_DISTANCE from a region, and more while the angle of the frame is a little open, since
-    nothing tells exactly where these are. (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the
-    square [0, 0] of the view.
-
-    Parameters
-    ----------
-    binding : the name of the node that each parameter of the task means.
-    actor : "utak" for the robot, or the name of a node.
-    lenient : whether only squares count that lie wholly within a region, and no distance is kept.
-    """
+    """Compute the squares that a task forbids to the robot or to an object by avoid(T, "WKT")."""
+    # Plans keep objects OBJECT_DISTANCE from a region, and more while the angle of the frame is a little open, since
+    # nothing tells exactly where these are.
     shape = model.labels.shape
     mask: Bools = np.zeros((shape[0] + 2 * margin, shape[1] + 2 * margin), np.bool_)
     for name, fact in avoidances(task):
@@ -293,11 +230,7 @@ def regions_kept_off(
 
 
 def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
-    """List where to look at pieces of verge that go on unseen and are hardly long enough to be walls.
-
-    If one of them is an object, rooms end elsewhere. One Viewpoint for each region of such squares that can be seen
-    better from reachable floor. The verge is what bounds the floor: walls, and all that is taken for wall.
-    """
+    """List where to look at pieces of verge that go on unseen and are hardly long enough to be walls."""
     model = situation.model
     pieces = model.verge & ~model.walls & dilate(~model.view.seen, 1)
     labels = np.where(pieces, model.labels, 0)

@@ -16,19 +16,14 @@ ORIGIN_GOALS = ("in", "through", "around")  # goals whose meaning depends on whe
 
 @dataclass(frozen=True)
 class Stage:
-    """Goals that shall hold at one time; a goal that a track fulfils stands alone in its stage.
+    """Goals that shall hold at one time; a goal that a track fulfils stands alone in its stage."""
 
-    Attributes
-    ----------
-    goals : the goals, at least one; the first argument of each is "utak" for the robot, or the parameter of an object.
-    followed : whether another stage comes after it.
-    wishes : goals that need not hold, each with the number of commands that it may cost; of the last stage alone.
-    later : goals about two things of which one must be brought elsewhere before: not yet among `goals`.
-    """
-
+    # The goals, at least one; the first argument of each is "utak" for the robot, or the parameter of an object
     goals: tuple[Fact, ...]
-    followed: bool = False
+    followed: bool = False  # whether another stage comes after it
+    # Goals that need not hold, each with the number of commands that it may cost; of the last stage alone
     wishes: tuple[tuple[Fact, int], ...] = ()
+    # Goals about two things of which one must be brought elsewhere before: not yet among `goals`
     later: tuple[Fact, ...] = ()
 
     @property
@@ -43,10 +38,7 @@ class Stage:
 
     @property
     def goes_on(self) -> bool:
-        """Whether the robot has more to do when all objects of the stage are where they shall be.
-
-        It has when another stage follows, or when the stage has goals for the robot itself, or goals that come later.
-        """
+        """Whether the robot has more to do when all objects of the stage are where they shall be."""
         return self.followed or len(self.own) > 0 or len(self.later) > 0
 
     def __str__(self) -> str:
@@ -55,11 +47,8 @@ class Stage:
 
 
 def stages(task: Task) -> tuple[Stage, ...]:
-    """Split the goals of a task into its stages, in the order in which they shall hold.
-
-    They are goals without their first(...) or then(...), and without the constraints, such as not_through(utak, d). The
-    last stage has the wishes. Empty for a task of constraints alone.
-    """
+    """Split the goals of a task into its stages, in the order in which they shall hold."""
+    # Empty for a task of constraints alone.
     steps: list[list[Fact]] = [[]]
     for fact in task.goals:
         if fact.name == "then":
@@ -84,15 +73,9 @@ def rests_on_waking(goal: Fact) -> bool:
 
 
 def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str]:
-    """Return the parameters of a task that a plan must not give another meaning.
-
-    These are parameters that the task names otherwise than as what is brought somewhere: in constraints, as the second
-    argument of a goal, or as what the robot goes round; and those of stages that are attained.
-
-    Parameters
-    ----------
-    attained : how many of its stages are attained.
-    """
+    """Return the parameters of a task that a plan must not give another meaning."""
+    # These are parameters that the task names otherwise than as what is brought somewhere: in constraints, as the
+    # second argument of a goal, or as what the robot goes round; and those of stages that are attained.
     found = {str(term) for fact in constraints(task) for term in fact.args}
     every = stages(task)
     for stage in every:

@@ -227,6 +227,16 @@ def riddles(root: Path) -> Iterator[str]:
                 yield f"{short(path, root)}:{line}: {text.splitlines()[0]}"
 
 
+def long_docstrings(root: Path) -> Iterator[str]:
+    """A docstring that no user reads has one line, examples aside: the name and the types say the rest."""
+    for path in modules(root):
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("_") and not node.name.endswith("__"):
+                text = ast.get_docstring(node) or ""
+                if "\n" in text and ">>>" not in text:
+                    yield f"{short(path, root)}:{node.lineno}: the docstring of {node.name} has more than one line"
+
+
 def persons(root: Path) -> Iterator[str]:
     """Comments and docstrings speak of the robot, not of him."""
     for package in MEASURED:
@@ -428,6 +438,7 @@ LAWS = (
     names_with_two_meanings,
     vague_constants,
     riddles,
+    long_docstrings,
     persons,
     shapeless_modules,
     code_in_fronts,

@@ -23,6 +23,7 @@ PLANTED: dict[str, tuple[dict[str, str], str]] = {
     "names_with_two_meanings": ({"kb/a.py": "SIZE = 3\n", "planner/b.py": "class SIZE:\n    pass\n"}, "SIZE"),
     "vague_constants": ({"kb/a.py": "MOST = 3\n"}, "MOST"),
     "riddles": ({"kb/a.py": 'def f():\n    """That it is so."""\n'}, "That it is so"),
+    "long_docstrings": ({"kb/a.py": 'def _f():\n    """Return it.\n\n    And more.\n    """\n'}, "_f has more"),
     "persons": ({"kb/a.py": "# he sees it\n"}, "kb"),
     "shapeless_modules": ({"kb/utils.py": '"""Useful small things."""\n'}, "kb/utils.py"),
     "code_in_fronts": ({"kb/__init__.py": '"""What is known."""\nimport kb.task\n'}, "kb/__init__.py"),

@@ -171,10 +171,7 @@ def world_of(line: Mapping[str, Any], rules: tuple[str, ...] = ()) -> World:
 
 @cache
 def _engine(rules: tuple[str, ...], changed: tuple[int, ...]) -> QueryEngine:
-    """Return the engine that answers questions with some rules: one process for each, until Python ends.
-
-    changed : when each file was changed last, so that rules that were edited are read again.
-    """
+    """Return the engine that answers questions with some rules: one process for each, until Python ends."""
     engine = QueryEngine(rules=rules)
     atexit.register(engine.close)
     return engine

@@ -85,48 +85,25 @@ class Mind:
 
 @dataclass(frozen=True)
 class MindReport:
-    """The report of a mind after an impression, as sessions take it.
+    """The report of a mind after an impression, as sessions take it."""
 
-    Attributes
-    ----------
-    command : the command before the impression; None on waking.
-    impression : what the body returned.
-    belief : what the mind believes, as JSON values.
-    why : the reason of the command.
-    """
-
-    command: Command | None
-    impression: Impression
-    belief: dict[str, Any]
-    why: str
+    command: Command | None  # the command before the impression; None on waking
+    impression: Impression  # what the body returned
+    belief: dict[str, Any]  # what the mind believes, as JSON values
+    why: str  # the reason of the command
 
 
 @dataclass(frozen=True)
 class MindVerdict:
-    """The verdict of a mind, as sessions take it.
+    """The verdict of a mind, as sessions take it."""
 
-    Attributes
-    ----------
-    believed : whether the mind believes that the task is done.
-    verdict : the kind of the verdict.
-    reason : why, in words.
-    """
-
-    believed: bool
-    verdict: str
-    reason: str
+    believed: bool  # whether the mind believes that the task is done
+    verdict: str  # the kind of the verdict
+    reason: str  # why, in words
 
 
 class MindRobot:
-    """A robot whose mind is a `Mind`; satisfies the protocol of `simulator.run.session`.
-
-    Parameters
-    ----------
-    body : what senses and acts.
-    task : what the mind shall do.
-    settings : the options of the run; its `max_steps` limits the commands.
-    mind : the mind, which has not begun.
-    """
+    """A robot whose mind is a `Mind`; satisfies the protocol of `simulator.run.session`."""
 
     def __init__(self, body: Body, task: Task, settings: Settings, mind: Mind) -> None:
         self.mind = mind
@@ -158,12 +135,8 @@ class MindRobot:
         return MindVerdict(found.kind == "done", found.kind, found.reason)
 
     def adopt(self, task: Task, settings: Settings) -> MindReport:
-        """Take another task and other options from the newest impression on, and return the report on it anew.
-
-        The mind begins with the task when it is another one. It is asked again for the newest impression when the task
-        is another one or the run had ended; else its answer counts. Raises CannotAdoptError for other rules: a mind
-        has none.
-        """
+        """Take another task and other options from the newest impression on, and return the report on it anew."""
+        # Raises CannotAdoptError for other rules: a mind has none.
         if settings.kb_files != self._settings.kb_files:
             raise CannotAdoptError(f"{type(self.mind).__name__} takes no rules: a mind of its own reasons without them")
         before, self._task, self._settings = self._task, task, settings
@@ -203,10 +176,7 @@ class MindRobot:
 
 
 def mind_maker(mind: Callable[[], Mind]) -> Callable[[Body, Task, Settings], MindRobot]:
-    """Return what makes a robot with a new mind for a body, a task and the options of a run.
-
-    mind : a class derived from `Mind`, or a function without arguments that returns a new mind.
-    """
+    """Return what makes a robot with a new mind for a body, a task and the options of a run."""
 
     def make(body: Body, task: Task, settings: Settings) -> MindRobot:
         made = mind()

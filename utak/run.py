@@ -146,10 +146,7 @@ class Run:
         self._set(scenario, settings, make, partial(_begin, scenario, settings, make))
 
     def _set(self, scenario: Scenario, settings: Settings, make: RobotMaker, begin: Callable[[], Session]) -> None:
-        """Set all that a run consists of, and begin it.
-
-        make : makes its robot. begin : makes the session anew, where this run begins.
-        """
+        """Set all that a run consists of, and begin it."""
         self.scenario, self.settings = scenario, settings
         self._make, self._begin = make, begin
         self._head = header(scenario.content, settings)
@@ -366,10 +363,8 @@ def _begin(scenario: Scenario, settings: Settings, make: RobotMaker) -> Session:
 
 
 def _repeat(begin: Callable[[], Session], lines: Sequence[dict[str, Any]]) -> Session:
-    """Return a new session that went through some steps again.
-
-    Raises RunNotRepeatedError when one came out otherwise.
-    """
+    """Return a new session that went through some steps again."""
+    # Raises RunNotRepeatedError when one came out otherwise.
     session = begin()
     for line in lines:
         if session.finished or session.step() != line:

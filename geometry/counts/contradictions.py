@@ -21,23 +21,7 @@ def total_contradictions(
     ranges: NDArray[np.int16],
     exempt: NDArray[np.float64],
 ) -> int:
-    """Return the number of contradictions: squares said to be both free and occupied, and fields that others refute.
-
-    A field is a set of squares that the robot sees as one; it says of its squares that all are free when its greatest
-    count is 0, and that all are occupied when its least count needs them all. It is refuted when its count is not
-    possible with what all fields say of its squares. The observations are taken to have been received on the squares
-    `corners`.
-
-    Parameters
-    ----------
-    columns, rows, weight : (fields, entries), the squares that the fields sample, in columns and rows east and north of
-        the square of the observation, and how often each counts, 0 for padding.
-    slack : (fields,) samples of each field that need not agree: its least count is taken lower by so many.
-    corners : (observations, 2), column and row of the square of each observation, map frame.
-    ranges : (observations, fields, 2), least and greatest counts of occupied squares, by weight.
-    exempt : (n, 3), x, y (map frame) and radius, in squares, of discs in which observations need not agree; what is
-        said of squares with their centres there does not count. n may be 0.
-    """
+    """Return the number of contradictions: squares said to be both free and occupied, and fields that others refute."""
     west, south = corners[:, 0].min() - SIGHT_RADIUS, corners[:, 1].min() - SIGHT_RADIUS
     width = corners[:, 0].max() - west + SIGHT_RADIUS + 1
     statements = np.zeros((corners[:, 1].max() - south + SIGHT_RADIUS + 1, width), np.uint8)
@@ -79,10 +63,7 @@ def total_contradictions(
 
 @compiled
 def _within(exempt: NDArray[np.float64], x: float, y: float) -> bool:
-    """Return whether a point lies on one of some discs; their edges belong to them. False when there are none.
-
-    `exempt` (n, 3) are x, y and radius of the discs, in squares. The point is (x, y) in squares, in the discs' frame.
-    """
+    """Return whether a point lies on one of some discs; their edges belong to them. False when there are none."""
     found = False
     for n in range(len(exempt)):
         found = found or math.hypot(x - exempt[n, 0], y - exempt[n, 1]) <= exempt[n, 2]

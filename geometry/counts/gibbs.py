@@ -54,81 +54,43 @@ __all__ = ["FREE", "OCCUPIED"]
 
 
 class Counts(NamedTuple):
-    """The counts of occupied squares under n fields; a field is a set of squares that the robot sees as one.
+    """The counts of occupied squares under n fields; a field is a set of squares that the robot sees as one."""
 
-    Attributes
-    ----------
-    where : (n, m) int32, flat indices (row * columns + column) of the squares of each field, in the ground without
-        frame.
-    weight : (n, m) int16, how often each square counts; 0 is padding.
-    low, high : (n,) int16, the least and the greatest count, by weight.
-    """
-
+    # (n, m) int32, flat indices (row * columns + column) of the squares of each field, in the ground without frame
     where: NDArray[np.int32]
-    weight: NDArray[np.int16]
-    low: NDArray[np.int16]
+    weight: NDArray[np.int16]  # (n, m) int16, how often each square counts; 0 is padding
+    low: NDArray[np.int16]  # (n,) int16, the least and the greatest count, by weight
     high: NDArray[np.int16]
 
     def of(self, fields: NDArray[np.int64]) -> "Counts":
-        """Return the counts of some of the fields, given by number (index), in the order of these; new arrays.
-
-        Of each field it holds the flat squares, how often each counts, and the least and the greatest count. A field is
-        a set of squares that the robot sees as one; its count is that of its occupied squares.
-        """
+        """Return the counts of some of the fields, given by number (index), in the order of these; new arrays."""
         return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
 
 
 class _Raster(NamedTuple):
-    """A raster with a frame of one unseen square, and the n squares of it that are drawn.
+    """A raster with a frame of one unseen square, and the n squares of it that are drawn."""
 
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Attributes
-    ----------
-    squares : (n,) int64, their flat indices in the framed raster, ascending.
-    rank : (size,) int32, by flat index, which of them a square is; RANK_FIXED or RANK_UNSEEN if none.
-    shown_corners : (n,) int32, as bits, the corners of each square about which all four squares were seen: 1
-        north-east, 2 north-west, 4 south-east, 8 south-west.
-    around : (8,) int64, flat steps to the neighbours, in the order of NEIGHBOUR_STEPS.
-    ends, field, share : (n + 1,), (entries,) and (entries,) int32: the fields of square k are field[ends[k]:ends[k +
-        1]], and how often each counts it.
-    where : (fields, m) int32, flat indices of the squares of each field, in the framed raster.
-    used : (fields, m) bool, those of them that are drawn.
-    limits : (fields, 2) int32, the least and the greatest count.
-    """
-
-    squares: NDArray[np.int64]
+    squares: NDArray[np.int64]  # (n,) int64, their flat indices in the framed raster, ascending
+    # (size,) int32, by flat index, which of them a square is; RANK_FIXED or RANK_UNSEEN if none
     rank: NDArray[np.int32]
+    # (n,) int32, as bits, the corners of each square about which all four squares were seen: 1 north-east, 2
+    # north-west, 4 south-east, 8 south-west
     shown_corners: NDArray[np.int32]
-    around: NDArray[np.int64]
+    around: NDArray[np.int64]  # (8,) int64, flat steps to the neighbours, in the order of NEIGHBOUR_STEPS
+    # (n + 1,), (entries,) and (entries,) int32: the fields of square k are field[ends[k]:ends[k + 1]], and how often
+    # each counts it
     ends: NDArray[np.int32]
     field: NDArray[np.int32]
     share: NDArray[np.int32]
-    where: NDArray[np.int32]
-    used: NDArray[np.bool_]
-    limits: NDArray[np.int32]
+    where: NDArray[np.int32]  # (fields, m) int32, flat indices of the squares of each field, in the framed raster
+    used: NDArray[np.bool_]  # (fields, m) bool, those of them that are drawn
+    limits: NDArray[np.int32]  # (fields, 2) int32, the least and the greatest count
 
 
 def pictures(
     ground: NDArray[np.int8], counts: Counts, first: NDArray[np.int8], sweeps: int, hot: float, seed: int = 20031
 ) -> NDArray[np.int8]:
-    """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied, else 0.
-
-    There is one for each of `first`, in that order. They agree as well as the sampling brings them; some counts may
-    stay wrong. A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    ground : (rows, columns) int8, row 0 in the south: FREE, OCCUPIED, DRAWN (to be sampled) or UNSEEN_SQUARE (outside
-        the raster, drawn as 0).
-    counts : counts under fields, of squares of the ground.
-    first : (m, rows, columns) int8, 1 where occupied, the rasters with which the m samples begin; read where the ground
-        is DRAWN.
-    sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE, in
-        equal steps.
-    hot : the inverse temperature of the first sweep, more than 0; the lower, the freer are the first changes.
-    seed : from 1 to 2^31 - 2. The same arguments give the same samples.
-    """
+    """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied, else 0."""
     framed = np.pad(ground, 1, constant_values=UNSEEN_SQUARE)
     raster = _raster(framed, counts)
     images_framed = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == OCCUPIED).astype(
@@ -146,19 +108,8 @@ def pictures(
 def costs(
     images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge_cost: float = EDGE_COST
 ) -> NDArray[np.float64]:
-    """Return the cost of each raster, (m,) float64: its edges, its corners, and the squares by which counts are wrong.
-
-    A cost is a negative log probability at the inverse temperature 1, without its constant; the lower the likelier.
-    Edges and corners count only where they touch points about which all four squares were seen.
-
-    Parameters
-    ----------
-    images : (m, rows, columns) int8, 1 where a square is occupied, 0 elsewhere, row 0 in the south.
-    ground : (rows, columns) int8, FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE, row 0 in the south; as they were sampled.
-    counts : the fields and their least and greatest counts, of squares of the ground.
-    edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall
-        that goes on straight is what is to be expected.
-    """
+    """Return the cost of each raster, (m,) float64."""
+    # Its edges, its corners, and the squares by which counts are wrong.
     seen = ground != UNSEEN_SQUARE
     all_seen = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
     points = (
@@ -172,18 +123,7 @@ def costs(
 
 
 def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
-    """Return the squares of a framed ground that are drawn (sampled), with their neighbours and fields, as arrays.
-
-    The result holds the flat indices of these squares in the framed raster, ascending, the number of each by flat
-    index, the corners of each that count (bits), flat steps to the neighbours, the fields of each square and how often
-    each counts it, and of each field its squares and its least and greatest count. A field is a set of squares that the
-    robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    framed : (rows + 2, columns + 2) int8: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE; the frame is UNSEEN_SQUARE.
-    counts : counts under fields, with flat indices in the ground without frame.
-    """
+    """Return the squares of a framed ground that are drawn (sampled), with their neighbours and fields, as arrays."""
     columns = framed.shape[1]
     row, column = np.divmod(counts.where, columns - 2)
     where = (row + 1) * columns + column + 1
@@ -211,16 +151,7 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
 
 
 def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns: int) -> NDArray[np.int32]:
-    """Return as bits, (n,) int32, the corners of each square about which all four squares were seen.
-
-    The bits are 1 north-east, 2 north-west, 4 south-east, 8 south-west.
-
-    Parameters
-    ----------
-    seen : (size,) bool, flat over the framed raster.
-    squares : (n,) flat indices of the squares, none of them in the frame.
-    columns : columns of the framed raster.
-    """
+    """Return as bits, (n,) int32, the corners of each square about which all four squares were seen."""
     shown = np.zeros(len(squares), np.int32)
     for point in range(4):
         corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
@@ -231,11 +162,7 @@ def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns:
 
 @cache
 def _flip_costs() -> NDArray[np.float32]:
-    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2) float32, flat.
-
-    It is negative where the raster becomes cheaper. The indices are the square's shown corners (bits), its occupied
-    neighbours (bits), and its state before (1 occupied): the flat index is (corners << 9) + (neighbours << 1) + state.
-    """
+    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2) float32, flat."""
     shown_corners, around, was = np.ogrid[:16, :256, :2]
     change = np.zeros((16, 256, 2))
     for point in range(4):
@@ -252,14 +179,7 @@ def _flip_costs() -> NDArray[np.float32]:
 def _corner_cost(
     square: Bits, horizontal: Bits, vertical: Bits, diagonal: Bits, edge_cost: float = EDGE_COST
 ) -> NDArray[np.float64]:
-    """Return the cost of four squares about a point: half of each edge between two of them, and each corner.
-
-    Parameters
-    ----------
-    square, horizontal, vertical, diagonal : arrays of 0 (free) and 1 (occupied) that broadcast: one of the four
-        squares, its neighbours beside and above or below it, and the one opposite.
-    edge_cost : the cost of an edge.
-    """
+    """Return the cost of four squares about a point: half of each edge between two of them, and each corner."""
     edges = (square ^ horizontal) + (vertical ^ diagonal) + (square ^ vertical) + (horizontal ^ diagonal)
     corners = np.where(edges == 4, 2, (square + horizontal + vertical + diagonal) % 2)
     result: NDArray[np.float64] = edge_cost * edges / 2 + CORNER_COST * corners
@@ -268,37 +188,14 @@ def _corner_cost(
 
 @cache
 def _thresholds() -> NDArray[np.float32]:
-    """Return equally likely thresholds (THRESHOLD_COUNT,) float32: rises of the cost allowed at inverse temperature 1.
-
-    They are more than 0, in falling order, distributed exponentially with mean 1.
-    """
+    """Return equally likely thresholds (THRESHOLD_COUNT,) float32."""
+    # Rises of the cost allowed at inverse temperature 1.
     return (-np.log((np.arange(THRESHOLD_COUNT) + 0.5) / THRESHOLD_COUNT)).astype(np.float32)
 
 
 @bare
 def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed) -> None:  # type: ignore[no-untyped-def]
-    """Change rasters, in place, until they are simple and agree with the counts; nothing is returned.
-
-    Changed are `images`, `neighbours` and `counts`; some counts may stay wrong. A field is a set of squares that the
-    robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    raster : a `_Raster`, the squares that are sampled: their flat indices, the number of each by flat index, their
-        corners that count (bits), steps to their neighbours, the fields of each, and the limits of each field's count.
-    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
-        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
-    thresholds : (THRESHOLD_COUNT,) float32, equally likely rises of the cost that are allowed at inverse temperature 1;
-        for each change bits of the random number are the index, and the entry is divided by the inverse temperature.
-    images : (m, size) int8, 1 where occupied, flat framed rasters; changed at drawn squares.
-    neighbours : (m, n) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
-        neighbour n of NEIGHBOUR_STEPS).
-    counts : (m, fields) int32, the count of occupied squares of each raster under each field, by weight; kept up to
-        date.
-    flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
-    inverse_temperatures : (sweeps,) float32, one for each sweep over all drawn squares.
-    seed : from 1 to 2^31 - 2; raster j begins with (j + 1) times this random number.
-    """
+    """Change rasters, in place, until they are simple and agree with the counts; nothing is returned."""
     for number in range(images.shape[0]):
         random = seed * (number + 1) % LEHMER_MODULUS
         sample(
@@ -316,27 +213,7 @@ def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipp
 
 @bare
 def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random) -> None:  # type: ignore[no-untyped-def]
-    """Change one raster, in place, square by square, in one sweep for each inverse temperature; nothing is returned.
-
-    Changed are `image`, `neighbours` and `counts`. The random state goes on within and is not handed back. A field is a
-    set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    raster : a `_Raster`, the squares that are sampled: their flat indices, the number of each by flat index, their
-        corners that count (bits), steps to their neighbours, the fields of each, and the limits of each field's count.
-    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
-        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
-    thresholds : (THRESHOLD_COUNT,) float32, equally likely rises of the cost that are allowed at inverse temperature 1;
-        for each change bits of the random number are the index, and the entry is divided by the inverse temperature.
-    image : (size,) int8, 1 where occupied, the flat framed raster; changed at drawn squares.
-    neighbours : (n,) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
-        neighbour n of NEIGHBOUR_STEPS).
-    counts : (fields,) int32, the count of occupied squares under each field, by weight; kept up to date.
-    flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
-    inverse_temperatures : (sweeps,) float32, one for each sweep over all drawn squares.
-    random : the first random number, from 1 to LEHMER_MODULUS - 1.
-    """
+    """Change one raster, in place, square by square, in one sweep for each inverse temperature; nothing is returned."""
     squares, rank, shown_corners, around, ends, field, share, where, used, limits = raster
     count_error = 0
     for f in range(limits.shape[0]):
@@ -392,22 +269,7 @@ def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, i
 
 @bare
 def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other) -> float:  # type: ignore[no-untyped-def]
-    """Return the change of the cost, counts left out, when two squares flip; nothing is changed.
-
-    A cost is a negative log probability at the inverse temperature 1, without unit; negative: the raster gets cheaper.
-    The squares may be neighbours of each other.
-
-    Parameters
-    ----------
-    squares, shown_corners, around : attributes of `_Raster`: flat indices of the drawn squares; the corners of each
-        about which all was seen, as bits (1 north-east, 2 north-west, 4 south-east, 8 south-west); flat steps to the
-        eight neighbours.
-    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
-        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
-    image, neighbours : the flat framed raster, and the occupied neighbours of each drawn square, as bits (bit n for
-        neighbour n of NEIGHBOUR_STEPS).
-    k, other : numbers of the two drawn squares.
-    """
+    """Return the change of the cost, counts left out, when two squares flip; nothing is changed."""
     other_neighbours = neighbours[other]  # once k is changed
     for n in range(8):
         other_neighbours ^= (squares[k] + around[n] == squares[other]) << (7 - n)
@@ -417,25 +279,7 @@ def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbo
 
 @bare
 def try_flips(raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number) -> int:  # type: ignore[no-untyped-def]
-    """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold.
-
-    Return by how many squares more the counts are wrong then (negative: fewer); 0 when the squares are left as they
-    were. A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    raster : a `_Raster`, the squares that are sampled: their flat indices, the number of each by flat index, their
-        corners that count (bits), steps to their neighbours, the fields of each, and the limits of each field's count.
-    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
-        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
-    image : (size,) the flat framed raster, 1 where occupied; changed when the squares flip, as are the next two.
-    neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS).
-    counts : (fields,) the count of occupied squares under each field.
-    count_error : by how many squares the counts are wrong before, all fields together.
-    threshold : the rise of the cost that is allowed.
-    flipped : numbers of drawn squares.
-    number : how many of them flip; with 0 nothing changes.
-    """
+    """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold."""
     squares, rank, shown_corners, around, ends, field, share, _, _, limits = raster
     cost, worse = 0.0, 0
     for m in range(number):
@@ -458,23 +302,7 @@ def try_flips(raster, flip_costs, image, neighbours, counts, count_error, thresh
 
 @bare
 def collect_edge_move(squares, rank, around, image, k, random, flipped) -> int:  # type: ignore[no-untyped-def]
-    """List the squares that flip when the edge on one side of square k is moved beyond it; return how many they are.
-
-    The random number decides which side, whether the whole edge moves or a piece, with the outline opposite or without.
-    Squares lie on one edge as long as they are drawn, have the state of square k, and the squares across have the other
-    state. Return 0 when there is no edge on that side.
-
-    Parameters
-    ----------
-    squares, rank, around : attributes of `_Raster`: flat indices of the drawn squares; the number of each drawn square,
-        by flat index; flat steps to the eight neighbours.
-    image : (size,) the flat framed raster, 1 where occupied.
-    k : the number of the square, among those that are drawn (sampled).
-    random : a random number; of its lowest 11 bits, which are used, the first two are the side (0 south, 1 north, 2
-        west, 3 east). It is not advanced.
-    flipped : written from index 0 on: numbers of drawn squares, k first, then those on its edge to one side, to the
-        other, then those of the outline opposite if it moves too.
-    """
+    """List the squares that flip when the edge on one side of square k is moved beyond it; return how many they are."""
     side, here = random & 3, squares[k]
     across, along, look = around[ACROSS[side]], around[ALONG_EDGE[side]], image[here]
     if image[here + across] == look:
@@ -505,17 +333,7 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped) -> int: 
 
 @bare
 def flip(square, rank, around, image, neighbours) -> None:  # type: ignore[no-untyped-def]
-    """Flip a square in the raster and in its neighbours' bits, but not in the counts.
-
-    Parameters
-    ----------
-    square : its flat index in the framed raster.
-    rank, around : attributes of `_Raster`: the number of each drawn square, by flat index; flat steps to the eight
-        neighbours.
-    image : (size,) the flat framed raster, 1 where occupied; changed at the square.
-    neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS);
-        changed for drawn squares about it.
-    """
+    """Flip a square in the raster and in its neighbours' bits, but not in the counts."""
     image[square] = 1 - image[square]
     for n in range(8):
         other = rank[square + around[n]]
@@ -525,20 +343,7 @@ def flip(square, rank, around, image, neighbours) -> None:  # type: ignore[no-un
 
 @bare
 def count_error_change(k, more, ends, field, share, limits, counts) -> int:  # type: ignore[no-untyped-def]
-    """Return by how many squares more the counts are wrong when a square is counted once more, or once less.
-
-    It is negative where they are wrong by fewer. A field is a set of squares that the robot sees as one; its count is
-    that of its occupied squares.
-
-    Parameters
-    ----------
-    k : the number of the square, among those that are drawn (sampled).
-    more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share : (n + 1,), (entries,) and (entries,): the fields of square k are field[ends[k]:ends[k + 1]], and
-        how often each counts it stands at the same place in `share`.
-    limits : (fields, 2) the least and the greatest count of each field.
-    counts : (fields,) the count of occupied squares under each field; not changed.
-    """
+    """Return by how many squares more the counts are wrong when a square is counted once more, or once less."""
     worse = 0
     for i in range(ends[k], ends[k + 1]):
         f = field[i]
@@ -551,17 +356,6 @@ def count_error_change(k, more, ends, field, share, limits, counts) -> int:  # t
 
 @bare
 def update_counts(k, more, ends, field, share, counts) -> None:  # type: ignore[no-untyped-def]
-    """Count a square once more, or once less, under each of its fields: as often as the field samples it.
-
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    k : the number of the square, among those that are drawn (sampled).
-    more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share : (n + 1,), (entries,) and (entries,): the fields of square k are field[ends[k]:ends[k + 1]], and
-        how often each counts it stands at the same place in `share`.
-    counts : (fields,) the count of occupied squares under each field; changed.
-    """
+    """Count a square once more, or once less, under each of its fields: as often as the field samples it."""
     for i in range(ends[k], ends[k + 1]):
         counts[field[i]] += share[i] * more

@@ -13,40 +13,23 @@ from geometry.kernels.jit import compiled
 
 
 class Blobs(NamedTuple):
-    """The n edge-connected occupied parts of a raster.
+    """The n edge-connected occupied parts of a raster."""
 
-    Attributes
-    ----------
-    labels : (rows, columns) int32, 0 for none, k for the part at [k - 1] of the other arrays; numbered by first square,
-        row by row from row 0.
-    area : (n,) int64, in squares.
-    outward : (n,) int64, number of sides of its squares beyond which nothing was seen.
-    spread : (n,) float64, sum of its principal moments (the second moments of its area, of squares with sides), divided
-        by the square of the area; no unit (a square has 1/6, a disc 1 / (2 pi)).
-    lengthy : (n,) float64, the difference of the principal moments, divided by their sum; no unit (0: as wide as long,
-        near 1: a line).
-    """
-
+    # (rows, columns) int32, 0 for none, k for the part at [k - 1] of the other arrays; numbered by first square, row by
+    # row from row 0
     labels: NDArray[np.int32]
-    area: NDArray[np.int64]
-    outward: NDArray[np.int64]
+    area: NDArray[np.int64]  # (n,) int64, in squares
+    outward: NDArray[np.int64]  # (n,) int64, number of sides of its squares beyond which nothing was seen
+    # (n,) float64, sum of its principal moments (the second moments of its area, of squares with sides), divided by the
+    # square of the area; no unit (a square has 1/6, a disc 1 / (2 pi))
     spread: NDArray[np.float64]
+    # (n,) float64, the difference of the principal moments, divided by their sum; no unit (0: as wide as long, near 1:
+    # a line)
     lengthy: NDArray[np.float64]
 
 
 def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
     """Return the edge-connected occupied parts of one raster, in the order of their first squares, row by row.
-
-    They are parallel arrays with an entry for each part, of length 0 without any: `area` in squares, `outward`, the
-    number of sides of its squares beyond which nothing was seen, `spread`, how far it extends for its area (1/6 for a
-    square, more for a longer or looser part; no unit), and `lengthy`, 0 for as wide as long to nearly 1 for a line.
-    `labels` gives for each square the number of its part, from 1, or 0.
-
-    Parameters
-    ----------
-    image : (rows, columns) int8, 1 where a square is occupied.
-    ground : (rows, columns) int8, what is known of each square (FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE of gibbs.py);
-        only UNSEEN_SQUARE matters. Squares beyond the array count as unseen.
 
     Examples
     --------
@@ -71,17 +54,7 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
 
 @compiled
 def _label_parts(image, ground, labels, sums) -> int:  # type: ignore[no-untyped-def]
-    """Write the number of each square's edge-connected occupied part, sum up the parts, and return how many there are.
-
-    Parameters
-    ----------
-    image : (rows, columns) int8, 1 where a square is occupied.
-    ground : (rows, columns) int8, UNSEEN_SQUARE where nothing was seen.
-    labels : (rows, columns) int32, 0 at first, written: the number of each square's part, from 1; 0 for none.
-    sums : (parts + 1 or more, 7) float64, 0 at first, written at row k for part k: its number of squares, the sums over
-        them of column x, row y, x * x, y * y and x * y (whole numbers, in squares), and its sides beyond which nothing
-        was seen.
-    """
+    """Write the number of each square's edge-connected occupied part, sum up, and return how many there are."""
     rows, columns = image.shape
     stack = np.empty((rows * columns, 2), np.int64)
     number = 0

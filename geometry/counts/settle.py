@@ -30,23 +30,7 @@ Numbers = NDArray[np.int16]
 def remaining_counts(
     state: SquareStates, where: Ints, weight: Numbers, low: Numbers, high: Numbers
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
-    """Return what remains of every field once settled squares are taken out.
-
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
-    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
-    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-
-    Returns
-    -------
-    open : (n, m) bool, the entries on squares that are not settled.
-    weight : (n,) int64, the sum of their weights.
-    low, high : (n,) int64, the least (0 or more) and the greatest count left for them. The greatest is below the least,
-        or negative, where the field contradicts what is settled.
-    """
+    """Return what remains of every field once settled squares are taken out."""
     fields, entries = where.shape
     open_ = np.zeros((fields, entries), np.bool_)
     left = np.zeros((3, fields), np.int64)
@@ -69,17 +53,7 @@ def remaining_counts(
 def misfits(
     state: SquareStates, where: Ints, weight: Numbers, low: Numbers, high: Numbers, wrong: NDArray[np.bool_]
 ) -> int:
-    """Return how many fields cannot have their counts if all that is settled is right; mark them in `wrong`.
-
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
-    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
-    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-    wrong : (n,) bool, written: True for fields that cannot have their counts.
-    """
+    """Return how many fields cannot have their counts if all that is settled is right; mark them in `wrong`."""
     found = 0
     for i in range(where.shape[0]):
         occupied, possible = 0, 0
@@ -105,20 +79,7 @@ def settle(
     fresh: NDArray[np.bool_],
     impression: int,
 ) -> None:
-    """Settle in place all squares that the counts settle, by single fields and by pairs of fields.
-
-    At most MAX_ROUNDS rounds are made. Where fields contradict each other some verdict is settled, without an error. A
-    field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are OPEN.
-    settled_by : (squares,) int16, the number of the impression that settled a square; changed for these squares.
-    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
-    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-    fresh : (n,) bool, the fields not compared yet; all False afterwards, unless the rounds ran out.
-    impression : the number of the present impression (one observation of the surroundings), written to `settled_by`.
-    """
+    """Settle in place all squares that the counts settle, by single fields and by pairs of fields."""
     verdicts, newly_settled = np.zeros(where.size, np.int8), np.zeros(len(state), np.bool_)
     for _ in range(MAX_ROUNDS):
         changed = False
@@ -148,22 +109,7 @@ def _settle_by_single_fields(
     newly_settled: NDArray[np.bool_],
     impression: int,
 ) -> bool:
-    """Settle squares by single fields, and return whether any was settled.
-
-    A field that can take no more occupied squares leaves its other squares free. A field that needs all its open
-    squares fills them. If two fields contradict each other, the square becomes OCCUPIED. A field is a set of squares
-    that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are settled.
-    settled_by : (squares,) int16, the number of the impression that settled a square; changed there.
-    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
-    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-    verdicts : (n * m,) int8, scratch.
-    newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
-    impression : the number of the present impression (one observation of the surroundings), written to `settled_by`.
-    """
+    """Settle squares by single fields, and return whether any was settled."""
     fields, entries = where.shape
     found = False
     for i in range(fields):
@@ -208,22 +154,8 @@ def _settle_by_pairs(
     newly_settled: NDArray[np.bool_],
     impression: int,
 ) -> bool:
-    """Settle what two fields do not share, from the difference of their counts; return whether any square was settled.
-
-    Only fields whose open squares all count once are compared, and of these pairs in which one is fresh. If pairs
-    contradict each other, the square becomes FREE. A field is a set of squares that the robot sees as one; its count is
-    that of its occupied squares.
-
-    Parameters
-    ----------
-    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are settled.
-    settled_by : (squares,) int16, the number of the impression that settled a square; changed there.
-    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
-    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-    fresh : (n,) bool, the fields not compared yet; all False afterwards.
-    newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
-    impression : the number of the present impression (one observation of the surroundings), written to `settled_by`.
-    """
+    """Settle what two fields do not share, from the difference of their counts."""
+    # Return whether any square was settled.
     fields, entries = where.shape
     open_weight, low_left, high_left = (
         np.zeros(fields, np.int64),
@@ -302,23 +234,7 @@ def _settle_by_pairs(
 def _fields_by_square(
     state: SquareStates, where: Ints, weight: Numbers, open_weight: Longs, chosen: NDArray[np.bool_], entries: int
 ) -> tuple[Longs, Longs]:
-    """Return the chosen fields with open squares, by open square: those on square s are on[first[s]:first[s + 1]].
-
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
-
-    Parameters
-    ----------
-    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
-    where, weight : (n, m) flat squares of each field, and how often each counts, 0 for padding.
-    open_weight : (n,) fields where this is 0 are left out.
-    chosen : (n,) bool, which fields to list.
-    entries : how many entries `on` must have room for: the sum of `open_weight`.
-
-    Returns
-    -------
-    first : (squares + 2,) int64, indices into `on`.
-    on : (entries,) int64, numbers of fields, by square, ascending on each; arbitrary behind the last.
-    """
+    """Return the chosen fields with open squares, by open square: those on square s are on[first[s]:first[s + 1]]."""
     first, on = np.zeros(len(state) + 2, np.int64), np.empty(entries, np.int64)
     for i in range(where.shape[0]):
         if chosen[i] and open_weight[i] > 0:

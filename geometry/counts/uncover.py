@@ -20,23 +20,7 @@ def remove_covered_squares(
     certain_x: int,
     certain_y: int,
 ) -> None:
-    """Remove the squares that an object covers, or may cover, from the fields of an observation, in place.
-
-    A field is a set of squares that the robot sees as one, with a least and a greatest count of occupied ones. Squares
-    that the object may cover are not sampled any more; the counts are reduced by what it may, or must, contribute. They
-    may fall below 0.
-
-    Parameters
-    ----------
-    columns, rows, weight : (fields, entries), the squares that the fields sample, in columns and rows east and north of
-        the square of the observation, and how often each counts, 0 for padding. `weight` is changed: 0 at squares that
-        the object may cover.
-    ranges : (fields, 2), least and greatest counts, by weight; changed.
-    possible, certain : (rows, columns) bool, row 0 in the south, the squares that the object may cover, and those that
-        it must cover; each an array of its own place and size, beyond whose edge nothing is covered.
-    possible_x, possible_y, certain_x, certain_y : column and row of the observation's square in those arrays; may lie
-        outside.
-    """
+    """Remove the squares that an object covers, or may cover, from the fields of an observation, in place."""
     for i in range(weight.shape[0]):
         for k in range(weight.shape[1]):
             if weight[i, k] == 0:

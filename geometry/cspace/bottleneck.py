@@ -34,39 +34,16 @@ RASTER_REFINEMENTS = (1, 2, 4)  # factors by which the field's raster is refined
 
 @dataclass(frozen=True)
 class Bottleneck:
-    """A locally narrowest place between obstacles. Squares, table frame.
+    """A locally narrowest place between obstacles. Squares, table frame."""
 
-    Attributes
-    ----------
-    place : (x, y), its middle.
-    sides : the two points (x, y) of the obstacles that make it, in no order that means anything.
-    width : distance between them.
-    """
-
-    place: tuple[float, float]
+    place: tuple[float, float]  # (x, y), its middle
+    # The two points (x, y) of the obstacles that make it, in no order that means anything
     sides: tuple[tuple[float, float], tuple[float, float]]
-    width: float
+    width: float  # distance between them
 
 
 def find_bottleneck(obstacle_field: ObstacleField, goals: Bools, reached: Floats, radius: float) -> Bottleneck | None:
-    """Return the narrowest place on the widest path to the goal, near where the search ended; None without walls.
-
-    Parameters
-    ----------
-    obstacle_field : the obstacles.
-    goals : (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal. Without a True
-        pixel the result means nothing.
-    reached : (n, 2) places x, y, squares, table frame, that the body came to, the start first. The search ended at the
-        one from which the path left to the goal costs least.
-    radius : of the body, squares. The bottleneck is sought within NECK_SEARCH_RADII radii of there. If the body has
-        room to turn all along that stretch it was not stopped there, and the whole path counts.
-
-    Returns
-    -------
-    Bottleneck : its middle (x, y), the two points (x, y) of obstacles on either side of it, and the distance between
-        them (`width`), in squares, table frame. Where no path is free the best path through walls is followed all the
-        same. None when there are not obstacles on both sides of that place, or it lies in an obstacle.
-    """
+    """Return the narrowest place on the widest path to the goal, near where the search ended; None without walls."""
     field, path_clearance = _coarsest_passable_raster(obstacle_field, goals, reached[0])
     costs = _costs_to_goal(field, max(path_clearance, field.frame[2] / 10))
     pixels = field.pixels_at(reached)
@@ -81,16 +58,7 @@ def find_bottleneck(obstacle_field: ObstacleField, goals: Bools, reached: Floats
 
 
 def _narrowest_index(clearance: Floats, candidates: Bools) -> int:
-    """Return the index of the pixel where a path is narrowest, starting from the pixels in `candidates`.
-
-    From their narrowest it goes on along the path as long as the path grows narrower, then to the middle of a stretch
-    of equal clearance: in the middle of a neck of several pixels, not at its mouth.
-
-    Parameters
-    ----------
-    clearance : (n,) distance from each pixel of the path to the obstacles, in squares.
-    candidates : (n,) bool, at least one True.
-    """
+    """Return the index of the pixel where a path is narrowest, starting from the pixels in `candidates`."""
     first = int(np.argmin(np.where(candidates, clearance, np.inf)))
     for ahead in (1, -1):
         while 0 <= first + ahead < len(clearance) and clearance[first + ahead] < clearance[first] - EQUAL_CLEARANCE:
@@ -100,25 +68,16 @@ def _narrowest_index(clearance: Floats, candidates: Bools) -> int:
 
 
 class ClearanceField(NamedTuple):
-    """A raster of distances to obstacles, with a goal.
+    """A raster of distances to obstacles, with a goal."""
 
-    Attributes
-    ----------
-    frame : (3,) x, y of the raster's lower left corner in the table frame, side of a pixel; squares.
-    raster : (rows, columns) signed distance to the obstacles, squares, negative inside; row 0 in the south. As of an
-        ObstacleField, or finer.
-    goals : (rows, columns) bool: pixels of the goal.
-    """
-
-    frame: Floats
+    frame: Floats  # (3,) x, y of the raster's lower left corner in the table frame, side of a pixel; squares
+    # (rows, columns) signed distance to the obstacles, squares, negative inside; row 0 in the south. As of an
+    # ObstacleField, or finer.
     raster: Floats
-    goals: Bools
+    goals: Bools  # (rows, columns) bool: pixels of the goal
 
     def pixels_at(self, places: Floats) -> npt.NDArray[np.intp]:
-        """Return the pixels (n, 2) row, column of places (n, 2) x, y; the nearest pixel for places outside.
-
-        Places are in squares, table frame; row 0 is in the south.
-        """
+        """Return the pixels (n, 2) row, column of places (n, 2) x, y; the nearest pixel for places outside."""
         found = np.floor((places - self.frame[:2]) / self.frame[2]).astype(np.intp)[:, ::-1]
         pixels: npt.NDArray[np.intp] = np.clip(found, 0, np.array(self.raster.shape) - 1)
         return pixels
@@ -127,14 +86,7 @@ class ClearanceField(NamedTuple):
 def _coarsest_passable_raster(
     obstacle_field: ObstacleField, goals: Bools, start: Floats
 ) -> tuple[ClearanceField, float]:
-    """Return the coarsest raster with a path from start to goal, and the clearance of the widest path, in squares.
-
-    The raster is a ClearanceField: frame, signed distances to the obstacles in squares and goal pixels, row 0 in the
-    south. Rasters are tried with 1, 2 and 4 pixels along each side of a pixel of the field.
-
-    `obstacle_field` : the obstacles. The field's own raster and 0.0 if there is a path in none. `goals` : (rows,
-        columns) bool on the field's own raster. `start` : (2,) x, y in squares, table frame.
-    """
+    """Return the coarsest raster with a path from start to goal, and the clearance of the widest path, in squares."""
     field = ClearanceField(obstacle_field.frame, obstacle_field.raster, goals)
     for times in RASTER_REFINEMENTS:
         if times > 1:
@@ -148,12 +100,9 @@ def _coarsest_passable_raster(
 
 
 def _costs_to_goal(field: ClearanceField, path_clearance: float) -> Floats:
-    """Return the cost to the goal from every pixel, by paths nowhere narrower than the widest path from the start is.
-
-    (rows, columns) float64 as field.raster; a pixel costs at most 1, one narrower than `path_clearance` (squares)
-    NARROWER_PIXEL_COST. Clearance is cheap, so that paths keep off walls and are narrow only where they must be. They
-    end at goal pixels that are as wide, if there are any: a narrower one beside the bottleneck would be taken for it.
-    """
+    """Return the cost to the goal from every pixel, by paths no narrower than the widest one from the start."""
+    # Clearance is cheap, so that paths keep off walls and are narrow only where they must be. They end at goal pixels
+    # that are as wide, if there are any: a narrower one beside the bottleneck would be taken for it.
     clearance = np.maximum(field.raster, path_clearance)
     narrower = field.raster < path_clearance - EQUAL_CLEARANCE
     goals = field.goals & ~narrower
@@ -165,17 +114,7 @@ def _costs_to_goal(field: ClearanceField, path_clearance: float) -> Floats:
 
 @compiled
 def _widest_path_clearance(raster: Floats, goals: Bools, row: int, column: int, pixel: float) -> float:
-    """Return the least clearance, on the widest path (maximin) from goal pixels to a pixel, in squares.
-
-    0.0 without any path. It may be 0.0 or negative where every path leads through an obstacle.
-
-    Parameters
-    ----------
-    raster : (rows, columns) signed distance to the obstacles, squares, row 0 in the south.
-    goals : (rows, columns) bool.
-    row, column : the pixel where the path ends.
-    pixel : side of a pixel, squares.
-    """
+    """Return the least clearance, on the widest path (maximin) from goal pixels to a pixel, in squares."""
     rows, columns = raster.shape
     path_clearance = np.full((rows, columns), -1e9)
     heap = [(0.0, 0, 0)]
@@ -204,14 +143,7 @@ def _widest_path_clearance(raster: Floats, goals: Bools, row: int, column: int, 
 
 
 def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """Return the pixels (n, 2) row, column on the way of steepest descent of `costs` from `start` to the goal.
-
-    Parameters
-    ----------
-    costs : (rows, columns) cost to the goal, 0 at goal pixels.
-    start : (2,) row, column; the first pixel of the result. Steps lead to one of the eight neighbours, of equal costs
-        the southernmost, then westernmost. The way ends early at a local minimum.
-    """
+    """Return the pixels (n, 2) row, column on the way of steepest descent of `costs` from `start` to the goal."""
     row, column = int(start[0]), int(start[1])
     path = [(row, column)]
     while costs[row, column] > 0.0:
@@ -226,12 +158,8 @@ def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]
 
 
 def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) -> Bottleneck | None:
-    """Return the bottleneck about a place: from the nearest point of an obstacle to the nearest on the other side.
-
-    It holds its middle (x, y), moved from `place` to halfway between the two points, these points and their distance,
-    in squares, table frame. `obstacle_field` : the obstacles. `place` : (x, y) in squares, table frame. None without
-    obstacles on both sides, or if the place is in an obstacle.
-    """
+    """Return the bottleneck about a place: from the nearest point of an obstacle to the nearest on the other side."""
+    # None without obstacles on both sides, or if the place is in an obstacle.
     obstacles = shapely.union_all(obstacle_field.polygons)
     here = np.array(place)
     sides: list[Floats] = []
@@ -254,19 +182,13 @@ def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) ->
 
 
 def _nearest_point(here: Floats, obstacles: Any) -> Floats | None:
-    """Return the point (2,) x, y of a geometry that is nearest to the place `here` (2,); None if it is empty.
-
-    `obstacles` : a shapely geometry in the frame of `here`.
-    """
+    """Return the point (2,) x, y of a geometry that is nearest to the place `here` (2,); None if it is empty."""
     line = shapely.shortest_line(shapely.Point(here), obstacles)
     return None if line is None or line.is_empty else np.array(line.coords[1])
 
 
 def _half_plane(here: Floats, ahead: Floats, far: float) -> Any:
-    """Return the half-plane of what lies from `here` in the direction `ahead`, cut off at the distance `far` (squares).
-
-    A shapely Polygon, table frame. `here` and `ahead` are (2,) x, y; the length of `ahead` does not matter.
-    """
+    """Return the half-plane of what lies from `here` in the direction `ahead`, cut off at the distance `far`."""
     unit = ahead / max(float(np.hypot(*ahead)), 1e-12)
     across = np.array([-unit[1], unit[0]]) * far
     base = here + 1e-6 * unit
@@ -274,18 +196,8 @@ def _half_plane(here: Floats, ahead: Floats, far: float) -> Any:
 
 
 def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach: float) -> Any:
-    """Return the obstacles (shapely geometry, table frame) with the two sides of a bottleneck moved apart.
-
-    Only the connected free space that the bottleneck is in grows: what lies behind a wall would open it from behind.
-    The result is a new shapely geometry, squares, table frame; obstacles beyond `reach` stay as they are.
-
-    Parameters
-    ----------
-    obstacles : shapely geometry, squares, table frame.
-    bottleneck : the place to widen; its middle, its two points and its width are read.
-    extra : by how many squares it becomes wider; half of it on each side.
-    reach : the sides are moved within this many squares of its middle.
-    """
+    """Return the obstacles (shapely geometry, table frame) with the two sides of a bottleneck moved apart."""
+    # Only the connected free space that the bottleneck is in grows: what lies behind a wall would open it from behind.
     middle = shapely.Point(bottleneck.place)
     window = middle.buffer(reach)
     parts = shapely.get_parts(window.difference(obstacles))
@@ -299,18 +211,7 @@ def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach
 
 
 def status_when_wide(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> str:
-    """Return the status of planning if one bottleneck alone were as wide as the body however it is turned.
-
-    "found", "impossible" or "limit" (undecided). The bottleneck is widened to 2.2 radii.
-
-    Parameters
-    ----------
-    obstacles : shapely geometry, squares, table frame.
-    bottleneck : the place to widen.
-    radius : of the body, squares.
-    status_with : status_with(walls, cells) returns the status of a MotionPlan ("found", "impossible" or "limit") for
-        the motion among other obstacles (shapely geometry), and how many cells the search took, of those allowed.
-    """
+    """Return the status of planning if one bottleneck alone were as wide as the body however it is turned."""
     extra, reach = _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
     return status_with(widen_bottleneck(obstacles, bottleneck, extra, reach), WIDENING_CELLS)[0]
 
@@ -318,18 +219,7 @@ def status_when_wide(obstacles: Any, bottleneck: Bottleneck, radius: float, stat
 def missing_width(
     obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery
 ) -> tuple[float, float, float]:
-    """Return how much wider a bottleneck must be for a body to pass, provided that widening it suffices.
-
-    By more than the first number, by about the second and by no more than the third, in squares: with the first the
-    motion is proved impossible, with the third a motion was found.
-
-    Method: bisection, to WIDTH_PRECISION or until WIDENING_CELLS cells are used up. A width for which planning stays
-    undecided lies near the one that is sought: the bisection goes on in the larger of the gaps below and above those.
-
-    Parameters
-    ----------
-    obstacles, bottleneck, radius, status_with : as for `status_when_wide`.
-    """
+    """Return how much wider a bottleneck must be for a body to pass, provided that widening it suffices."""
     low, high, reach = 0.0, _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
     undecided: list[float] = []  # the least and the greatest width for which planning stayed undecided
     left = WIDENING_CELLS
@@ -357,16 +247,10 @@ def missing_width(
 
 
 def _max_widening(bottleneck: Bottleneck, radius: float) -> float:
-    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares.
-
-    So that it is 2.2 radii wide, but by no less than four times WIDTH_PRECISION.
-    """
+    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares."""
     return max(2.2 * radius - bottleneck.width, 4 * WIDTH_PRECISION)
 
 
 def _window_radius(bottleneck: Bottleneck, radius: float) -> float:
-    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares.
-
-    Its width, plus two radii, plus the greatest widening.
-    """
+    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares."""
     return bottleneck.width + 2 * radius + _max_widening(bottleneck, radius)

@@ -35,55 +35,31 @@ LINKS_PER_CELL = (
 
 
 class CellTree(NamedTuple):
-    """The cells of a subdivision, numbered from 0, the root. Depth d counts splits from the root.
+    """The cells of a subdivision, numbered from 0, the root. Depth d counts splits from the root."""
 
-    Attributes
-    ----------
-    box : (capacity, 4) int32, lower corner of each cell in whole-number units from the root's lower corner: x, y,
-        angle; and its depth.
-    child : (capacity,) number of the first child, the others follow it; -1 for a leaf.
-    kind : (capacity,) as cell_clearance.classify_cell says, or CELL_GIVEN_UP.
-    used : (1,) number of cells.
-    sizes : (depths, 2) sides of a cell by depth, in units: place, angle.
-    frame : (5,) x, y of the root's lower corner (squares, table frame); unit of place (squares); unit of angle
-        (radians); resolution (squares).
-    link : (links, 2) the cell that a link leads to, and the next link of the same cell or -1. Linked cells share a
-        face.
-    head : (capacity,) first link of each cell; -1 for none.
-    links : (1,) number of links.
-    middle : (capacity, 3) the pose of the body's centre in the middle of each cell: x, y in squares, table frame;
-        radians from 0 to 2 pi.
-    changed : (capacity,) the cells that were split or given up since the last search for a channel.
-    changes : (1,) number of such cells.
-    """
-
+    # (capacity, 4) int32, lower corner of each cell in whole-number units from the root's lower corner: x, y, angle;
+    # and its depth
     box: Ints
-    child: Ints
-    kind: npt.NDArray[np.int8]
-    used: npt.NDArray[np.int64]
-    sizes: Ints
+    child: Ints  # (capacity,) number of the first child, the others follow it; -1 for a leaf
+    kind: npt.NDArray[np.int8]  # (capacity,) as cell_clearance.classify_cell says, or CELL_GIVEN_UP.
+    used: npt.NDArray[np.int64]  # (1,) number of cells
+    sizes: Ints  # (depths, 2) sides of a cell by depth, in units: place, angle
+    # (5,) x, y of the root's lower corner (squares, table frame); unit of place (squares); unit of angle (radians);
+    # resolution (squares)
     frame: Floats
+    # (links, 2) the cell that a link leads to, and the next link of the same cell or -1. Linked cells share a face.
     link: Ints
-    head: Ints
-    links: npt.NDArray[np.int64]
+    head: Ints  # (capacity,) first link of each cell; -1 for none
+    links: npt.NDArray[np.int64]  # (1,) number of links
+    # (capacity, 3) the pose of the body's centre in the middle of each cell: x, y in squares, table frame; radians from
+    # 0 to 2 pi
     middle: Floats
-    changed: Ints
-    changes: npt.NDArray[np.int64]
+    changed: Ints  # (capacity,) the cells that were split or given up since the last search for a channel
+    changes: npt.NDArray[np.int64]  # (1,) number of such cells
 
 
 def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> CellTree:
-    """Return a tree of one cell, number 0, undecided: a square of places and all angles.
-
-    The CellTree holds arrays by number of cell: lower corners in whole-number units, first children, kinds, middles (x,
-    y in squares, table frame; radians), links to neighbours, and the list of cells changed.
-
-    Parameters
-    ----------
-    x, y, side : lower left corner and side of the square of places, in squares, table frame.
-    radius : radius of the body about its centre, squares; it weighs angles against places.
-    resolution : cells in which no point of the body moves further than this, in squares, are not split.
-    capacity : number of cells for which there is memory.
-    """
+    """Return a tree of one cell, number 0, undecided: a square of places and all angles."""
     sizes = [(ROOT_UNITS, ROOT_UNITS)]
     for _ in range(MAX_CELL_DEPTH):
         place, angle = sizes[-1]
@@ -111,16 +87,7 @@ def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: fl
 
 @bare
 def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
-    """Return whether a cell is larger than the resolution and there is memory for its children and their links.
-
-    False also at the greatest depth. It is larger when some point of the body may move further than the resolution
-    (squares) from where it is in the middle of the cell.
-
-    Parameters
-    ----------
-    tree, cell : the cells, and the number of the one that is asked about.
-    body : only its radius is read.
-    """
+    """Return whether a cell is larger than the resolution and there is memory for its children and their links."""
     depth = tree.box[cell, 3]
     if depth + 1 >= len(tree.sizes) or tree.used[0] + 4 > len(tree.child) or tree.links[0] > len(tree.link) // 2:
         return False
@@ -131,14 +98,7 @@ def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
 
 @bare
 def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges) -> None:
-    """Give a leaf its four or two children, classify them and link them to their neighbours. `tree` is changed.
-
-    Parameters
-    ----------
-    tree : the cells; the children get the next free numbers, row by row from the south-west (places), or by angle.
-    cell : number of the leaf; it must be splittable.
-    body, nearby : the body, and the obstacle edges that its poses are tested against.
-    """
+    """Give a leaf its four or two children, classify them and link them to their neighbours. `tree` is changed."""
     depth = tree.box[cell, 3] + 1
     place, angle = tree.sizes[depth, 0], tree.sizes[depth, 1]
     first = tree.used[0]
@@ -177,36 +137,21 @@ def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges)
 
 @bare
 def give_up_cell(tree: CellTree, cell: int) -> None:
-    """Mark the leaf `cell` of `tree` as given up: no channel may run through it any more.
-
-    Its kind becomes CELL_GIVEN_UP, and it is added to the cells changed. A channel is a chain of cells from start to
-    goal.
-    """
+    """Mark the leaf `cell` of `tree` as given up: no channel may run through it any more."""
     tree.kind[cell] = CELL_GIVEN_UP
     _note_change(tree, cell)
 
 
 @bare
 def _note_change(tree: CellTree, cell: int) -> None:
-    """Add a cell to those of `tree` that were changed since the last search.
-
-    The number `cell` is appended to tree.changed, and tree.changes counts one more.
-    """
+    """Add a cell to those of `tree` that were changed since the last search."""
     tree.changed[tree.changes[0]] = cell
     tree.changes[0] += 1
 
 
 @bare
 def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
-    """Return the number of the leaf that holds the pose (x, y, angle) of the body's centre; -1 outside the root.
-
-    On a border between cells the one with the greater coordinate.
-
-    Parameters
-    ----------
-    tree : the cells.
-    x, y, angle : the pose: squares, table frame; radians, any number of turns.
-    """
+    """Return the number of the leaf that holds the pose (x, y, angle) of the body's centre; -1 outside the root."""
     ix = math.floor((x - tree.frame[0]) / tree.frame[2])
     iy = math.floor((y - tree.frame[1]) / tree.frame[2])
     it = math.floor(angle / tree.frame[3]) % ROOT_UNITS
@@ -227,11 +172,7 @@ def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
 
 @bare
 def _link_if_face(tree: CellTree, a: int, b: int) -> None:
-    """Link leaves a and b of `tree` to each other if they share a face and neither is CELL_BLOCKED.
-
-    A face is shared where they touch along one of x, y, angle and overlap in the others. The new link comes first in
-    the list of each. Without memory nothing is done.
-    """
+    """Link leaves a and b of `tree` to each other if they share a face and neither is CELL_BLOCKED."""
     if tree.kind[a] == CELL_BLOCKED or tree.kind[b] == CELL_BLOCKED:
         return
     sizes_a, sizes_b = tree.sizes[tree.box[a, 3]], tree.sizes[tree.box[b, 3]]
@@ -250,13 +191,8 @@ def _link_if_face(tree: CellTree, a: int, b: int) -> None:
 
 @bare
 def next_link_to_leaf(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> int:
-    """Return the next link of a cell that leads to a leaf, after link `at`, or its first if `at` is -1; -1 at the end.
-
-    The result is an index of a row of `link`: (cell that the link leads to, next link of the same cell or -1); the leaf
-    is link[result, 0]. `head` : (capacity,) first link of each cell. `child` : (capacity,) -1 for a leaf. Links to
-    cells that were split are dropped on the way: `head` and `link` are changed. `child`, `head` and `link` are the
-    tree's: a whole tree is too many arrays to hand to a function that is called a million times.
-    """
+    """Return the next link of a cell that leads to a leaf, after link `at`, or its first if `at` is -1."""
+    # -1 at the end.
     while True:
         found = head[cell] if at < 0 else link[at, 1]
         if found < 0 or child[link[found, 0]] < 0:
@@ -269,19 +205,13 @@ def next_link_to_leaf(child: Ints, head: Ints, link: Ints, cell: int, at: int) -
 
 @bare
 def _overlap(a: int, size_a: int, b: int, size_b: int) -> int:
-    """Return the length of the overlap of two intervals: 0 if they touch, negative if they are apart.
-
-    `a`, `b` : their lower ends, `size_a`, `size_b` : their lengths, in units of a CellTree.
-    """
+    """Return the length of the overlap of two intervals: 0 if they touch, negative if they are apart."""
     return min(a + size_a, b + size_b) - max(a, b)
 
 
 @bare
 def _angle_overlap(a: int, size_a: int, b: int, size_b: int) -> int:
-    """Return the overlap of two intervals on the circle of angles: 0 if they touch, negative if they are apart.
-
-    `a`, `b` : their lower ends, `size_a`, `size_b` : their lengths, in units of angle, ROOT_UNITS to the whole turn.
-    """
+    """Return the overlap of two intervals on the circle of angles: 0 if they touch, negative if they are apart."""
     best = _overlap(a, size_a, b, size_b)
     best = max(best, _overlap(a + ROOT_UNITS, size_a, b, size_b))
     return max(best, _overlap(a, size_a, b + ROOT_UNITS, size_b))

@@ -48,53 +48,29 @@ NODE_NEW, NODE_QUEUED, NODE_SETTLED, NODE_POSTPONED = 0, 1, 2, 3  # states of ce
 
 
 class ChannelSearch(NamedTuple):
-    """A search among the cells of a tree, kept from one channel to the next.
+    """A search among the cells of a tree, kept from one channel to the next."""
 
-    A channel is a chain of neighbouring cells from start to goal. A cost of 1 stands for one square of path in large
-    free cells. Arrays of (capacity,) are indexed by the number of a cell.
-
-    Attributes
-    ----------
-    cost_to_go : (capacity,) estimated cost from a cell to the goal, times COST_TO_GO_WEIGHT.
-    cost : (capacity,) cost of the cheapest path found to a cell.
-    paths : the tree of these paths.
-    state : (capacity,) NODE_NEW, NODE_QUEUED (on the heap), NODE_SETTLED, or NODE_POSTPONED (a settled cell that may
-        hold a goal and is on the heap again).
-    seen : (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0.
-    key, item, size : the heap, see bounded_heap: keys, cells, and (number on it, number dropped).
-    channel : (capacity,) the cells of the last channel, the start's first; how many is what find_channel returned.
-    unattached : scratch of the repair.
-    distances : (rows, columns) estimated length to the goal from a pixel of the field's raster, squares, row 0 in the
-        south.
-    disc_centre : (2,) the point of the body, body frame, that these lengths are for.
-    """
-
-    cost_to_go: Floats
-    cost: Floats
-    paths: SearchTree
+    cost_to_go: Floats  # (capacity,) estimated cost from a cell to the goal, times COST_TO_GO_WEIGHT
+    cost: Floats  # (capacity,) cost of the cheapest path found to a cell
+    paths: SearchTree  # the tree of these paths
+    # (capacity,) NODE_NEW, NODE_QUEUED (on the heap), NODE_SETTLED, or NODE_POSTPONED (a settled cell that may hold a
+    # goal and is on the heap again)
     state: npt.NDArray[np.int8]
+    # (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0
     seen: npt.NDArray[np.int64]
-    key: Floats
+    key: Floats  # the heap, see bounded_heap: keys, cells, and (number on it, number dropped)
     item: Ints
     size: npt.NDArray[np.int64]
+    # (capacity,) the cells of the last channel, the start's first; how many is what find_channel returned
     channel: Ints
-    unattached: Ints
+    unattached: Ints  # scratch of the repair
+    # (rows, columns) estimated length to the goal from a pixel of the field's raster, squares, row 0 in the south
     distances: Floats
-    disc_centre: Floats
+    disc_centre: Floats  # (2,) the point of the body, body frame, that these lengths are for
 
 
 def new_channel_search(capacity: int, distances: Floats, disc_centre: Floats) -> ChannelSearch:
-    """Return a search with memory for a tree of `capacity` cells, nothing seen yet.
-
-    The ChannelSearch holds, by number of cell, costs, the cell before on the cheapest path and states, and the heap of
-    cells still to be looked at. A cost of 1 is one square of path in large free cells.
-
-    Parameters
-    ----------
-    capacity : number of cells.
-    distances : (rows, columns) estimated length to the goal from a pixel of the field's raster, squares.
-    disc_centre : (2,) the point of the body, body frame (its centre at the origin), that these lengths are for.
-    """
+    """Return a search with memory for a tree of `capacity` cells, nothing seen yet."""
     channel, unattached = (np.empty(capacity, np.int32) for _ in range(2))
     item = np.empty(8 * capacity, np.int32)
     numbers = np.zeros(2, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
@@ -123,22 +99,7 @@ def find_channel(
     goal: int,
     through_given_up: bool,
 ) -> int:
-    """Go on searching for a channel from cell `start` to the goal; return its number of cells, 0 if there is none.
-
-    A channel is a chain of neighbouring cells not known to be blocked; the one that looks cheapest is found.
-
-    The cells are written to search.channel, the start's first.
-
-    Parameters
-    ----------
-    tree, body, nearby : the cells (boxes of places and angles), and the body among obstacles.
-    region : the complement of the goal region, as obstacles; not used unless `goal` is REGION_GOAL.
-    search : the search so far; changed. search.seen[1] becomes 1 if the channel ends at a cell that only may hold a
-        pose in the goal region.
-    start, goal : numbers of leaves; `goal` may be REGION_GOAL.
-    through_given_up : whether the channel may run through cells given up; then search.seen must have been set to 0
-        before, which forgets all earlier searches. Otherwise they count as blocked.
-    """
+    """Go on searching for a channel from cell `start` to the goal; return its number of cells, 0 if there is none."""
     _repair_search(tree, body.radius, nearby, search)
     if tree.kind[start] == CELL_GIVEN_UP and not through_given_up:
         return 0
@@ -168,17 +129,7 @@ def find_channel(
 
 @bare
 def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: int) -> int:
-    """Return the kind of a cell with respect to the goal region, whose complement is `region`.
-
-    CELL_FREE (0) or CELL_CENTRE_FREE (1) : the pose in its middle is in the region. CELL_UNDECIDED (2) : another pose
-    of it may be. CELL_BLOCKED (3) : none is.
-
-    Parameters
-    ----------
-    tree, cell : the cells, and the number of the one that is asked about.
-    body : the body.
-    region : the complement of the goal region, as obstacles.
-    """
+    """Return the kind of a cell with respect to the goal region, whose complement is `region`."""
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
     half = tree.sizes[depth, 1] * tree.frame[3] / 2
@@ -187,16 +138,8 @@ def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: i
 
 @bare
 def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: ChannelSearch) -> None:
-    """Cut off what hung on cells that were split or given up; attach it and the new cells again. `search` is changed.
-
-    Parameters
-    ----------
-    tree : the cells; its list of changes is emptied.
-    search : costs, states, parents and heap of the search; cells that are cut off or new are looked at in order of
-        number.
-    radius : of the body, squares.
-    nearby : only the frame of its raster is used.
-    """
+    """Cut off what hung on cells that were split or given up."""
+    # Attach it and the new cells again. `search` is changed.
     unattached = 0
     for k in range(tree.changes[0]):
         root = tree.changed[k]
@@ -221,15 +164,8 @@ def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: C
 
 @bare
 def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> None:
-    """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one.
-
-    Blocked and split cells must not be given. `search` is changed: the cell's cost, state and parent, and the heap;
-    `radius` of the body in squares.
-
-    Parameters
-    ----------
-    tree, cell : the cells, and the number of the one to attach.
-    """
+    """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one."""
+    # Blocked and split cells must not be given.
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     best, by = 1e18, -1
     link = next_link_to_leaf(child, head, links, cell, -1)
@@ -248,15 +184,7 @@ def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> 
 
 @bare
 def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell: int, through_given_up: bool) -> None:
-    """Put the neighbours of a settled cell on the heap where the path through it is cheaper.
-
-    `search` is changed: costs, states and parents of neighbours, and the heap; settled ones stay. `through_given_up` :
-    whether paths may run through cells given up; otherwise these are left out. `radius` of the body in squares.
-
-    Parameters
-    ----------
-    tree, cell : the cells, and the number of the settled one.
-    """
+    """Put the neighbours of a settled cell on the heap where the path through it is cheaper."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     link = next_link_to_leaf(child, head, links, cell, -1)
     while link >= 0:
@@ -272,12 +200,7 @@ def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell
 
 @bare
 def _step_cost(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
-    """Return the cost of going from the middle of cell a to the middle of cell b.
-
-    A cost of 1 is one square of path in large free cells. It is the distance in squares, plus half the radius (squares)
-    times the turn (radians), times the mean price of the two cells. `middle` : (capacity, 3) poses in the middle of
-    cells; `kind` : (capacity,) kinds; `box` : (capacity, 4), the last column the depth.
-    """
+    """Return the cost of going from the middle of cell a to the middle of cell b."""
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
     turn = abs(middle[b, 2] - middle[a, 2])
     turn = min(turn, 2 * math.pi - turn)
@@ -287,15 +210,7 @@ def _step_cost(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: fl
 
 @bare
 def _cost_to_go(middle: Floats, distances: Floats, disc_centre: Floats, frame: Floats, cell: int) -> float:
-    """Return the estimated cost from the middle of a cell to the goal, times COST_TO_GO_WEIGHT.
-
-    Parameters
-    ----------
-    middle : as in CellTree: (capacity, 3) poses in the middle of cells.
-    distances, disc_centre : as in ChannelSearch: lengths to the goal by pixel, for that point of the body.
-    frame : (3,) x, y of the raster's lower left corner, side of a pixel; squares, table frame. The nearest pixel
-        counts.
-    """
+    """Return the estimated cost from the middle of a cell to the goal, times COST_TO_GO_WEIGHT."""
     c, s = math.cos(middle[cell, 2]), math.sin(middle[cell, 2])
     x = middle[cell, 0] + c * disc_centre[0] - s * disc_centre[1]
     y = middle[cell, 1] + s * disc_centre[0] + c * disc_centre[1]
@@ -306,10 +221,7 @@ def _cost_to_go(middle: Floats, distances: Floats, disc_centre: Floats, frame: F
 
 @bare
 def _write_channel(parent: Ints, channel: Ints, cell: int) -> int:
-    """Write the channel that ends at a cell to `channel`, from its start on; return its number of cells.
-
-    `parent` : (capacity,) the cell before each cell, -1 before the start.
-    """
+    """Write the channel that ends at a cell to `channel`, from its start on; return its number of cells."""
     length = 0
     at = cell
     while at >= 0:

@@ -22,56 +22,26 @@ MAX_PATH_CORNERS = 400  # corners of the free space up to which paths are sought
 
 
 def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
-    """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more.
-
-    Round corners are approximated by polygons with SIDES_PER_QUARTER sides a quarter turn, drawn about the circle if
-    `outer`, else in it. Argument and result are shapely geometries, squares, table frame. A negative radius counts as
-    0.
-    """
+    """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more."""
     times = 1.0 / math.cos(math.pi / (4 * SIDES_PER_QUARTER)) if outer else 1.0
     return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=SIDES_PER_QUARTER)
 
 
 def disc_room(obstacles: Any, radius: float, bounds: Floats, start: XY) -> Any:
-    """Return where the centre of a disc can be at most when it comes from a place: shapely geometry; empty for unknown.
-
-    Parameters
-    ----------
-    obstacles : shapely geometry, squares, table frame.
-    radius : radius of the disc, squares.
-    bounds : (4,) x0, y0, x1, y1 that its centre cannot leave.
-    start : (x, y) of its centre.
-    """
+    """Return where the centre of a disc can be at most when it comes from a place: shapely geometry."""
+    # Empty for unknown.
     room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius - DISC_SHRINKAGE, outer=False))
     parts = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= DISC_SHRINKAGE]
     return shapely.MultiPolygon(parts)
 
 
 def is_cut_off(room: Any, goal: Any) -> bool:
-    """Return whether the centre of a disc surely cannot get to a goal; False proves nothing.
-
-    Parameters
-    ----------
-    room : where it can be at most, as `disc_room` says.
-    goal : shapely geometry that it must reach, squares, table frame.
-    """
+    """Return whether the centre of a disc surely cannot get to a goal; False proves nothing."""
     return not room.is_empty and bool(room.distance(goal) > DISC_SHRINKAGE)
 
 
 def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: XY) -> list[XY] | None:
-    """Return the corners of a path for the centre of a disc from `start` to `goal`, both among them, or None.
-
-    In order, (x, y) in squares, table frame.
-
-    None proves nothing: grown obstacles are approximated from outside, and long searches are not made.
-
-    Parameters
-    ----------
-    obstacles : shapely geometry, squares, table frame.
-    radius : radius of the disc, squares.
-    bounds : (4,) x0, y0, x1, y1 that its centre cannot leave.
-    start, goal : (x, y) of its centre, squares, table frame.
-    """
+    """Return the corners of a path for the centre of a disc from `start` to `goal`, both among them, or None."""
     room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius, outer=True))
     for part in shapely.get_parts(room):
         if part.covers(shapely.Point(start)) and part.covers(shapely.Point(goal)):
@@ -80,18 +50,8 @@ def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goa
 
 
 def shortest_path_within(part: Any, start: XY, goal: XY) -> list[XY] | None:
-    """Return the corners (x, y) of the shortest path within a polygon, from `start` to `goal`, both among them.
-
-    In order, squares, table frame.
-
-    None if the polygon has more than MAX_PATH_CORNERS corners, or if no path is found. Method: Dijkstra's algorithm on
-    the visibility graph of the corners.
-
-    Parameters
-    ----------
-    part : shapely Polygon, holes allowed, squares, table frame.
-    start, goal : (x, y) in it.
-    """
+    """Return the corners (x, y) of the shortest path within a polygon, from `start` to `goal`, both among them."""
+    # None if the polygon has more than MAX_PATH_CORNERS corners, or if no path is found.
     corners = sorted({(x, y) for x, y in shapely.get_coordinates(part).tolist()} - {start, goal})
     if len(corners) > MAX_PATH_CORNERS:
         return None

@@ -26,30 +26,14 @@ ENOUGH_CLEARANCE = 0.2  # part of the body's radius: more clearance is not sough
 
 
 def fewest_motions(context: HopContext, path: Floats, edge: float) -> tuple[Motion, ...]:
-    """Return the motions of a path, replaced by as few as the candidates allow; () if a hop of it is not free.
-
-    Parameters
-    ----------
-    context : the body, with its pivot as centre, among its obstacles.
-    path : (n, 3) poses of that centre: x, y in squares, table frame, radians; hops from one to the next are free.
-    edge : direction of the body's edge that is worth laying along an axis, radians, body frame.
-
-    Returns
-    -------
-    tuple of Translate (dx, dy in squares) and Rotate (degrees, pivot), in order, table frame, turns about the body's
-    centre where it then is; they lead from the first to the last pose of `path`.
-    """
+    """Return the motions of a path, replaced by as few as the candidates allow; () if a hop of it is not free."""
     candidates = _candidates(context.body, context.nearby, path, edge)
     order = _cheapest_order(context, candidates)
     return motions_along(context, candidates[order]) if len(order) else ()
 
 
 def longest_edge_angle(shape: Any) -> float:
-    """Return the direction of the longest edge of a polygon's outer ring, in radians from -pi to pi.
-
-    `shape` : shapely Polygon. 0 is east, counter-clockwise positive, along the edge as the ring runs. Of equally long
-        edges the first on the ring counts.
-    """
+    """Return the direction of the longest edge of a polygon's outer ring, in radians from -pi to pi."""
     corners = shapely.get_coordinates(shape.exterior)
     along = np.diff(corners, axis=0)
     x, y = along[int(np.argmax(np.round(np.hypot(along[:, 0], along[:, 1]), 6)))]
@@ -57,25 +41,14 @@ def longest_edge_angle(shape: Any) -> float:
 
 
 def longest_edge_tilt(shape: Any) -> float:
-    """Return how far a polygon's longest edge is turned counter-clockwise from an axis: degrees, from 0 to below 90.
-
-    `shape` : shapely Polygon. Of equally long edges the first on its outer ring counts.
-    """
+    """Return how far a polygon's longest edge is turned counter-clockwise from an axis: degrees, from 0 to below 90."""
     return math.degrees(longest_edge_angle(shape)) % 90.0
 
 
 def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float) -> Floats:
-    """Return poses on and near a path: (n, 3) x, y, radians; the first its start, the last its end.
-
-    In between, in this order: the other poses of the path, poses evenly along it, these and turned ones moved to more
-    clearance, and poses turned so that the edge lies along an axis.
-
-    Parameters
-    ----------
-    body, nearby : the body among obstacles.
-    path : (m, 3) poses of the body's centre: x, y in squares, table frame, radians.
-    edge : direction, in radians, body frame, of the edge to lay along an axis.
-    """
+    """Return poses on and near a path: (n, 3) x, y, radians; the first its start, the last its end."""
+    # In between, in this order: the other poses of the path, poses evenly along it, these and turned ones moved to more
+    # clearance, and poses turned so that the edge lies along an axis.
     along = resample_evenly(path, body.radius, CANDIDATE_POSES)
     straight = along[::2].copy()
     straight[:, 2] = np.round((straight[:, 2] + edge) / (math.pi / 2)) * (math.pi / 2) - edge
@@ -86,13 +59,7 @@ def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float
 
 
 def resample_evenly(path: Floats, radius: float, count: int) -> Floats:
-    """Return `count` poses at even distances along a path: (count, 3) x, y, radians (unwrapped), its ends included.
-
-    Parameters
-    ----------
-    path : (n, 3) poses x, y in squares, radians, in any frame; n at least 1.
-    radius : radius of the body, squares: turning by an angle counts as a distance of radius times angle.
-    """
+    """Return `count` poses at even distances along a path: (count, 3) x, y, radians (unwrapped), its ends included."""
     angles = np.unwrap(path[:, 2])
     step = np.hypot(*np.diff(path[:, :2], axis=0).T) + radius * np.abs(np.diff(angles))
     distance = np.concatenate([[0.0], np.cumsum(step)])
@@ -102,11 +69,7 @@ def resample_evenly(path: Floats, radius: float, count: int) -> Floats:
 
 @bare
 def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> None:
-    """Move a pose, in place and without turning it, to where the body has more clearance: steps in eight directions.
-
-    It stops at ENOUGH_CLEARANCE. `body`, `nearby` : the body among obstacles. `pose` : (3,) x, y of the body's centre
-    in squares, table frame, radians; changed.
-    """
+    """Move a pose, in place and without turning it, to where the body has more clearance: steps in eight directions."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
     enough = ENOUGH_CLEARANCE * body.radius
     best = clearance_at(body, nearby, pose[0], pose[1], c, s)
@@ -125,16 +88,8 @@ def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> No
 
 @compiled
 def _cheapest_order(context: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
-    """Return the indices of the poses on the cheapest path from the first to the last; empty if there is none.
-
-    (k,) int64, in order. A hop costs the number of its motions, plus a little by their size; of paths that cost the
-    same the one found first.
-
-    Parameters
-    ----------
-    context : the body among its obstacles.
-    poses : (n, 3) x, y of the body's centre in squares, table frame, radians.
-    """
+    """Return the indices of the poses on the cheapest path from the first to the last; empty if there is none."""
+    # (k,) int64, in order.
     count = len(poses)
     cost, parent = np.full(count, np.inf), np.full(count, -1, np.int64)
     done = np.zeros(count, np.bool_)

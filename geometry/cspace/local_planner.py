@@ -18,54 +18,30 @@ MIN_MOTION = 1e-12  # radians or squares: smaller motions count as none; bounds 
 
 
 class HopContext(NamedTuple):
-    """A body among its obstacles, as the local planner needs them.
+    """A body among its obstacles, as the local planner needs them."""
 
-    Attributes
-    ----------
-    body : the body about its centre.
-    nearby : obstacle edges by place, and the bounds of the reference point.
-    surface : the boundary that the body must not cross, table frame.
-    placed : (m, 7) scratch: the body's edges at a pose, table frame.
-    """
-
-    body: MovingBody
-    nearby: NearbyEdges
-    surface: Surface
-    placed: Floats
+    body: MovingBody  # the body about its centre
+    nearby: NearbyEdges  # obstacle edges by place, and the bounds of the reference point
+    surface: Surface  # the boundary that the body must not cross, table frame
+    placed: Floats  # (m, 7) scratch: the body's edges at a pose, table frame
 
 
 def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
-    """Return the body among its obstacles, as `hop` needs it. It has scratch memory of its own for the placed edges.
-
-    Parameters
-    ----------
-    body, nearby, surface : the body, the obstacle edges by place, the boundary that it must not cross.
-    """
+    """Return the body among its obstacles, as `hop` needs it. It has scratch memory of its own for the placed edges."""
     return HopContext(body, nearby, surface, np.empty_like(body.edges))
 
 
 @bare
 def copy_pose(target: Floats, pose: Floats) -> None:
-    """Copy a `pose` (x, y, angle), (3,), into `target`, (3,), which is overwritten.
-
-    An array assignment would take numba long to compile.
-    """
+    """Copy a `pose` (x, y, angle), (3,), into `target`, (3,), which is overwritten."""
+    # An array assignment would take numba long to compile.
     for k in range(3):
         target[k] = pose[k]
 
 
 @bare
 def _write_placed_edges(body_edges: Floats, edges: Floats, x: float, y: float, angle: float) -> None:
-    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7).
-
-    Rows are x0, y0, x1, y1, outward unit normal x and y, length.
-
-    Parameters
-    ----------
-    body_edges : in the body frame.
-    edges : output, in the table frame.
-    x, y, angle : pose of the body's centre, squares, table frame, radians.
-    """
+    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7)."""
     c, s = math.cos(angle), math.sin(angle)
     for i in range(len(edges)):
         for k in range(0, 6, 2):
@@ -80,12 +56,7 @@ def _write_placed_edges(body_edges: Floats, edges: Floats, x: float, y: float, a
 
 @bare
 def push_is_free(context: HopContext, x: float, y: float, angle: float, dx: float, dy: float) -> bool:
-    """Return whether the body can be pushed by (dx, dy) from a pose, free of obstacles and within bounds.
-
-    The end alone is checked against the bounds: the start must be within. Pose x, y, angle of the body's centre:
-    squares, table frame, radians. `context` : the body among its obstacles; context.placed is overwritten. A move below
-    MIN_MOTION only needs to be within bounds.
-    """
+    """Return whether the body can be pushed by (dx, dy) from a pose, free of obstacles and within bounds."""
     if not _reference_in_bounds(context.body.reference, context.nearby.bounds, x + dx, y + dy, angle):
         return False
     if abs(dx) + abs(dy) < MIN_MOTION:
@@ -97,12 +68,7 @@ def push_is_free(context: HopContext, x: float, y: float, angle: float, dx: floa
 
 @bare
 def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: float) -> bool:
-    """Return whether the body can be turned about its centre by `turn` radians from a pose, free and within bounds.
-
-    Pose x, y, angle of the body's centre: squares, table frame, radians; turns are counter-clockwise positive.
-    `context` : the body among its obstacles; context.placed is overwritten. A move below MIN_MOTION only needs to be
-    within bounds.
-    """
+    """Return whether the body can be turned about its centre by `turn` radians from a pose, free and within bounds."""
     if not _arc_in_bounds(context.body.reference, context.nearby.bounds, x, y, angle, turn):
         return False
     if abs(turn) < MIN_MOTION:
@@ -121,12 +87,7 @@ def shorter_turn(turn: float) -> float:
 
 @bare
 def hop(context: HopContext, here: Floats, there: Floats) -> int:
-    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST (1), PUSH_FIRST (2) or BLOCKED (0).
-
-    It makes one turn about its centre, the shorter way round, and one push, in the order named; TURN_FIRST if both are
-    free. `context` : the body among its obstacles; context.placed is overwritten. Poses are (3,) x, y of the body's
-    centre in squares, table frame, radians.
-    """
+    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST (1), PUSH_FIRST (2) or BLOCKED (0)."""
     dx, dy = there[0] - here[0], there[1] - here[1]
     turn = shorter_turn(there[2] - here[2])
     if turn_is_free(context, here[0], here[1], here[2], turn) and push_is_free(
@@ -144,11 +105,7 @@ def hop(context: HopContext, here: Floats, there: Floats) -> int:
 
 @bare
 def _reference_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, angle: float) -> bool:
-    """Return whether the reference point is within `bounds` (x0, y0, x1, y1) at a pose of the body's centre.
-
-    `x`, `y`, `angle` : that pose, squares, table frame, radians. `reference` : (2,) x, y relative to the centre, body
-        frame.
-    """
+    """Return whether the reference point is within `bounds` (x0, y0, x1, y1) at a pose of the body's centre."""
     c, s = math.cos(angle), math.sin(angle)
     rx, ry = x + c * reference[0] - s * reference[1], y + s * reference[0] + c * reference[1]
     return bool(bounds[0] - 1e-9 <= rx <= bounds[2] + 1e-9 and bounds[1] - 1e-9 <= ry <= bounds[3] + 1e-9)
@@ -156,14 +113,7 @@ def _reference_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, 
 
 @bare
 def _arc_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, angle: float, turn: float) -> bool:
-    """Return whether the reference point stays within its bounds over a turn: at both ends and the arc's extremes.
-
-    Parameters
-    ----------
-    reference : (2,) x, y relative to the centre, body frame.
-    bounds : (4,) x0, y0, x1, y1, squares, table frame.
-    x, y, angle : pose of the centre before the turn. turn : radians, counter-clockwise positive.
-    """
+    """Return whether the reference point stays within its bounds over a turn: at both ends and the arc's extremes."""
     if not _reference_in_bounds(reference, bounds, x, y, angle):
         return False
     if not _reference_in_bounds(reference, bounds, x, y, angle + turn):

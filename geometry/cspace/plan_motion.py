@@ -38,24 +38,18 @@ WIDENING_RESOLUTION = 4e-4  # resolution of the searches for the missing width
 
 @dataclass(frozen=True)
 class MotionQuery:
-    """A question to plan_motion that was answered "impossible", and how far its search got.
+    """A question to plan_motion that was answered "impossible", and how far its search got."""
 
-    Attributes
-    ----------
-    shape, field, start, goal, points : as in plan_motion; `field` are the obstacles prepared.
-    radius : radius of the body about its centre, squares.
-    reached : (n, 2) x, y in squares, table frame, where the centre of the body's largest inscribed disc came to, the
-        start first.
-    goals : (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal.
-    """
-
-    shape: Any
+    shape: Any  # as in plan_motion; `field` are the obstacles prepared
     field: ObstacleField
     start: Pose
     goal: "Pose | Inside"
     points: Sequence[tuple[float, float]]
-    radius: float
+    radius: float  # radius of the body about its centre, squares
+    # (n, 2) x, y in squares, table frame, where the centre of the body's largest inscribed disc came to, the start
+    # first
     reached: Floats
+    # (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal
     goals: npt.NDArray[np.bool_]
 
     @cached_property
@@ -64,16 +58,7 @@ class MotionQuery:
         return shapely.union_all(self.field.polygons)
 
     def status_among(self, walls: Any, cells: int) -> tuple[str, int]:
-        """Return the status of the same question among other, smaller obstacles, and the number of cells it took.
-
-        The status is "found", "impossible" or "limit". What was an obstacle becomes part of a goal region that it
-        borders on.
-
-        Parameters
-        ----------
-        walls : shapely geometry, squares, table frame: the obstacles instead.
-        cells : how many cells the search may take.
-        """
+        """Return the status of the same question among other, smaller obstacles, and the number of cells it took."""
         field, goal = ObstacleField(walls, self.field.bounds.tolist()), self.goal
         if isinstance(goal, Inside):
             opened = self.solid.difference(walls)
@@ -169,10 +154,7 @@ class MotionPlan:
 
 
 def _path_length(motion: Motion, pose: Pose) -> float:
-    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc.
-
-    `pose` : of the reference point, table frame.
-    """
+    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc."""
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     return abs(math.radians(motion.degrees)) * math.dist((pose.x, pose.y), motion.about)
@@ -255,11 +237,7 @@ def plan_motion(
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
-    """Return the bounds given, or the bounding box of obstacles, start and goal.
-
-    x0, y0, x1, y1 in squares, table frame. Those given are returned themselves; the box as a list. The start counts
-    with one square all round it.
-    """
+    """Return the bounds given, or the bounding box of obstacles, start and goal."""
     if bounds is not None:
         return bounds
     geometries = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]

@@ -14,35 +14,19 @@ from geometry.motion.cell_clearance import CELL_CENTRE_FREE, CELL_FREE, CELL_GIV
 
 
 class HopSequence(NamedTuple):
-    """The poses of a path found so far; the hops between them are free.
+    """The poses of a path found so far; the hops between them are free."""
 
-    A hop is one turn about the body's centre and one push, in either order.
-
-    Attributes
-    ----------
-    poses : (n, 3) x, y of the body's centre in squares, table frame, radians; the first is the start.
-    used : (1,) number of poses in use.
-    goal : (3,) the pose to end at; (0,) if the middle of the channel's last cell will do.
-    free_from : (cells,) for each cell another from whose middle the hop to its own middle was found free; -1 for none.
-        Most of a channel is that of the round before.
-    stops : (2, 3) scratch: the poses where a hop begins and ends.
-    """
-
-    poses: Floats
-    used: npt.NDArray[np.int64]
-    goal: Floats
+    poses: Floats  # (n, 3) x, y of the body's centre in squares, table frame, radians; the first is the start
+    used: npt.NDArray[np.int64]  # (1,) number of poses in use
+    goal: Floats  # (3,) the pose to end at; (0,) if the middle of the channel's last cell will do
+    # (cells,) for each cell another from whose middle the hop to its own middle was found free; -1 for none. Most of a
+    # channel is that of the round before.
     free_from: Ints
-    stops: Floats
+    stops: Floats  # (2, 3) scratch: the poses where a hop begins and ends
 
 
 def new_hop_sequence(start: Floats, goal: Floats, cells: int) -> HopSequence:
-    """Return a path of one pose, `start`, with memory for channels of `cells` cells.
-
-    The HopSequence holds the poses (n, 3) found so far, how many are in use, the goal, and hops known to be free.
-
-    `start` : (3,) x, y of the body's centre in squares, table frame, radians. `goal` : the same for a goal pose; an
-        empty array, (0,), for a region, where the middle of the last cell will do.
-    """
+    """Return a path of one pose, `start`, with memory for channels of `cells` cells."""
     hops = HopSequence(
         np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3))
     )
@@ -54,23 +38,10 @@ def new_hop_sequence(start: Floats, goal: Floats, cells: int) -> HopSequence:
 def follow_channel(
     tree: CellTree, context: HopContext, channel: Ints, length: int, split_last: bool, hops: HopSequence
 ) -> int:
-    """Check the hops along a channel and split the cells to blame; return how many were blamed, 0 if the path is free.
-
-    A hop is one turn about the body's centre and one push, from the middle of a cell to that of the next. A cell is
-    counted each time it is blamed.
-
-    One cell that is not free may be jumped over. After a hop that fails the rest is followed as if it had not failed,
-    so that one look at a channel finds most of its faults. A cell that is to blame and too small to split is given up.
-
-    Parameters
-    ----------
-    tree : the cells; changed where cells are split or given up.
-    context : the body among its obstacles.
-    channel, length : (capacity,) numbers of the cells from start to goal, and how many of them are in use.
-    split_last : whether the last cell must be split in any case, since it only may hold a pose in the goal region; then
-        it counts as blamed, and 0 is never returned. Otherwise it is split only if a hop blames it.
-    hops : the path; its poses are overwritten. If 0 is returned they are free from the start to the goal.
-    """
+    """Check the hops along a channel and split the cells to blame."""
+    # Return how many were blamed, 0 if the path is free.
+    # After a hop that fails the rest is followed as if it had not failed, so that one look at a channel finds most of
+    # its faults.
     hops.used[0] = 1
     total = length + (1 if len(hops.goal) > 0 else 0)
     blamed, last, n = 0, -1, 0
@@ -104,18 +75,7 @@ def follow_channel(
 def _write_stop(
     middle: Floats, kind: npt.NDArray[np.int8], channel: Ints, length: int, goal: Floats, n: int, there: Floats
 ) -> bool:
-    """Write stop n of a channel to `there`; return whether the body is known to be free there.
-
-    A stop is the middle of cell n, or the goal after the last cell.
-
-    Parameters
-    ----------
-    middle, kind : as in CellTree.
-    channel, length : numbers of the cells, and how many of them are in use.
-    goal : (3,) pose to end at; (0,) if there is none after the last cell.
-    n : number of the stop, from 0.
-    there : (3,) output: x, y of the body's centre in squares, table frame, radians.
-    """
+    """Write stop n of a channel to `there`; return whether the body is known to be free there."""
     if n == length:
         copy_pose(there, goal)
         return True
@@ -135,17 +95,7 @@ def _hop_to_stop(
     here: Floats,
     there: Floats,
 ) -> bool:
-    """Hop to stop n, directly or by way of the face between two cells, and append it; return whether that is free.
-
-    Parameters
-    ----------
-    tree, context : the cells, and the body among its obstacles.
-    channel, length : numbers of the cells, and how many of them are in use.
-    hops : the path; if the hop is free one or two poses are appended.
-    last : index in the channel of the cell from whose middle the hop leads; -1 for another pose.
-    n : index of the stop: a cell's middle, or the goal after the last cell.
-    here, there : (3,) poses where the hop begins and ends: x, y in squares, table frame, radians.
-    """
+    """Hop to stop n, directly or by way of the face between two cells, and append it; return whether that is free."""
     if not _direct_hop_is_free(context, channel, length, hops, last, n, here, there):
         if last < 0 or n >= length or n != last + 1:
             return False
@@ -163,19 +113,7 @@ def _hop_to_stop(
 def _direct_hop_is_free(
     context: HopContext, channel: Ints, length: int, hops: HopSequence, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
-    """Return whether the hop to stop n is free. From middle to middle of two cells that is computed only once.
-
-    hops.free_from is written, and context.placed overwritten.
-
-    Parameters
-    ----------
-    context : the body among its obstacles.
-    channel, length : numbers of the cells, and how many of them are in use.
-    hops : the path, with the hops known to be free.
-    last, n : indices in `channel` of the cell that the hop leaves (-1 for another pose) and of the stop that it leads
-        to.
-    here, there : (3,) poses where the hop begins and ends: x, y in squares, table frame, radians.
-    """
+    """Return whether the hop to stop n is free. From middle to middle of two cells that is computed only once."""
     between = last >= 0 and n < length
     if between and hops.free_from[channel[n]] == channel[last]:
         return True
@@ -188,10 +126,7 @@ def _direct_hop_is_free(
 
 @bare
 def _write_face_pose(tree: CellTree, a: int, b: int, middle: Floats) -> None:
-    """Write the pose in the middle of the face that neighbouring cells a and b share to `middle`, (3,).
-
-    `tree` : the cells. x, y in squares, table frame, and radians (below 0 or above 2 pi where the angles wrap).
-    """
+    """Write the pose in the middle of the face that neighbouring cells a and b share to `middle`, (3,)."""
     for k in range(3):
         unit = tree.frame[2] if k < 2 else tree.frame[3]
         size_a = tree.sizes[tree.box[a, 3], k // 2] * unit
@@ -208,18 +143,7 @@ def _write_face_pose(tree: CellTree, a: int, b: int, middle: Floats) -> None:
 
 @bare
 def _split_blamed(tree: CellTree, context: HopContext, channel: Ints, last: int, n: int, length: int, ends: int) -> int:
-    """Split the cell that a failed hop leads into, and the one that it leaves if that is as doubtful and as large.
-
-    Returns the number of cells blamed, at least 1.
-
-    Parameters
-    ----------
-    tree, context : the cells, which are changed, and the body among its obstacles.
-    channel, length : numbers of the cells, and how many of them are in use.
-    last : index in the channel of the cell that the hop leaves; -1 for none.
-    n : index of the stop that it leads to; `length` for the goal after the last cell.
-    ends : number of ends that must be reached: 2 with a goal pose, 1 (the start) with a goal region.
-    """
+    """Split the cell that a failed hop leads into, and the one that it leaves if that is as doubtful and as large."""
     blamed = 0
     if n < length and tree.kind[channel[n]] != CELL_FREE:
         blamed += _split_near(tree, context, channel, n, length, ends)
@@ -234,18 +158,7 @@ def _split_blamed(tree: CellTree, context: HopContext, channel: Ints, last: int,
 
 @bare
 def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, length: int, ends: int) -> int:
-    """Split cell n of a channel, or the one next to it if cell n holds an end to be reached and is too small.
-
-    Returns 1, the number of cells blamed. The body is free at its ends: in a channel of more than two cells theirs are
-    never given up. Others come as near to them as they can.
-
-    Parameters
-    ----------
-    tree, context : the cells, which are changed, and the body among its obstacles.
-    channel, length : numbers of the cells, and how many of them are in use.
-    n : index in the channel.
-    ends : number of ends that must be reached: 2 with a goal pose, 1 (the start) with a goal region.
-    """
+    """Split cell n of a channel, or the one next to it if cell n holds an end to be reached and is too small."""
     if length > 1 and not is_splittable(tree, channel[n], context.body):
         if n == 0:
             n = 1
@@ -256,10 +169,7 @@ def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, leng
 
 @bare
 def _split_or_give_up(tree: CellTree, context: HopContext, cell: int) -> int:
-    """Split leaf number `cell` of `tree`, or give it up if it is too small. Return 1: it was changed, now or before.
-
-    `context` : the body among its obstacles.
-    """
+    """Split leaf number `cell` of `tree`, or give it up if it is too small. Return 1: it was changed, now or before."""
     if tree.child[cell] >= 0 or tree.kind[cell] == CELL_GIVEN_UP:
         return 1
     if is_splittable(tree, cell, context.body):

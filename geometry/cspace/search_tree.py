@@ -13,26 +13,16 @@ from geometry.kernels.jit import bare
 
 
 class SearchTree(NamedTuple):
-    """Parents and children of cells; all arrays are (capacity,) int32 by number of cell, and -1 stands for no cell.
+    """Parents and children of cells; all arrays are (capacity,) int32 by number of cell, and -1 stands for no cell."""
 
-    Attributes
-    ----------
-    parent : the cell before a cell on the path to it.
-    first_child : one of the cells that have a cell as their parent.
-    next_sibling, previous_sibling : the next and the previous cell with the same parent; undefined without a parent.
-    """
-
-    parent: Ints
-    first_child: Ints
-    next_sibling: Ints
+    parent: Ints  # the cell before a cell on the path to it
+    first_child: Ints  # one of the cells that have a cell as their parent
+    next_sibling: Ints  # the next and the previous cell with the same parent; undefined without a parent
     previous_sibling: Ints
 
 
 def new_search_tree(capacity: int) -> SearchTree:
-    """Return memory for a tree of up to `capacity` cells. Each cell must be added before it is used.
-
-    The SearchTree holds, by number of cell, its parent, first child and siblings; -1 stands for none.
-    """
+    """Return memory for a tree of up to `capacity` cells. Each cell must be added before it is used."""
     return SearchTree(*(np.empty(capacity, np.int32) for _ in range(4)))
 
 
@@ -44,10 +34,7 @@ def add_cell(paths: SearchTree, cell: int) -> None:
 
 @bare
 def set_parent(paths: SearchTree, cell: int, parent: int) -> None:
-    """Let the path to a cell run through another parent, as its first child; the cell keeps its children.
-
-    `paths` is changed.
-    """
+    """Let the path to a cell run through another parent, as its first child; the cell keeps its children."""
     detach(paths, cell)
     first = paths.first_child[parent]
     paths.parent[cell], paths.next_sibling[cell], paths.previous_sibling[cell] = parent, first, -1
@@ -74,17 +61,7 @@ def detach(paths: SearchTree, cell: int) -> None:
 
 @bare
 def cut_off(paths: SearchTree, root: int, cells: Ints, count: int) -> int:
-    """Take a cell and all cells that hang on it out of the tree; return the new number of cells in `cells`.
-
-    They are written in breadth-first order: the root, its children, their children.
-
-    Parameters
-    ----------
-    paths : the tree; changed. None of the cells taken out has a parent or children then.
-    root : the cell.
-    cells : list with room for them; they are written from index `count` on, the root first.
-    count : number of cells that the list has before.
-    """
+    """Take a cell and all cells that hang on it out of the tree; return the new number of cells in `cells`."""
     detach(paths, root)
     cells[count] = root
     done, count = count, count + 1
@@ -102,10 +79,7 @@ def cut_off(paths: SearchTree, root: int, cells: Ints, count: int) -> int:
 
 @bare
 def sort_cells(cells: Ints, count: int) -> None:
-    """Sort the first `count` of `cells`, numbers of cells, in place, ascending (heapsort, Williams 1964).
-
-    So a search does not depend on the order of lists.
-    """
+    """Sort the first `count` of `cells`, numbers of cells, in place, ascending (heapsort, Williams 1964)."""
     for last in range(count // 2 - 1, -1, -1):
         _sift_down(cells, last, count)
     for size in range(count - 1, 0, -1):

@@ -17,12 +17,7 @@ PULL_ROUNDS = 4  # times that every corner of a path is pulled straight; tuned o
 
 @compiled
 def shorten_path(context: HopContext, poses: Floats) -> Floats:
-    """Return a shorter path (m, 3) from the first to the last of `poses` (n, 3); every hop of it is free.
-
-    Poses are x, y of the body's centre in squares, table frame, and radians; hops from one to the next must be free.
-    Poses are skipped by hops, the corners left are moved to where there is room, then pulled straight several times.
-    `context` : the body among its obstacles.
-    """
+    """Return a shorter path (m, 3) from the first to the last of `poses` (n, 3); every hop of it is free."""
     kept = _skip_poses(context, poses)
     if len(kept) > 2:
         kept = _skip_poses(context, _with_roomy_corners(context, kept))
@@ -34,12 +29,7 @@ def shorten_path(context: HopContext, poses: Floats) -> Floats:
 
 @compiled
 def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
-    """Return the path with its corners moved to where the body has more clearance: there the longest hops begin.
-
-    The first and the last pose stay. Argument (n, 3) and result (m, 3) are poses: x, y in squares, table frame,
-    radians. Where the hop between two such corners is not free the old ones stay between them. `context` : the body
-    among its obstacles.
-    """
+    """Return the path with its corners moved to where the body has more clearance: there the longest hops begin."""
     roomy = poses.copy()
     for n in range(1, len(poses) - 1):
         _move_to_clearance(context, roomy[n])
@@ -60,10 +50,7 @@ def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
 
 @bare
 def _move_to_clearance(context: HopContext, pose: Floats) -> None:
-    """Move a pose, in place, to where the body has more clearance: pattern search in place and angle, halving steps.
-
-    `pose` : (3,) x, y of the body's centre in squares, table frame, radians. `context` : the body among its obstacles.
-    """
+    """Move a pose, in place, to where the body has more clearance: pattern search in place and angle, halving steps."""
     best, radius = _clearance(context, pose), context.body.radius
     step = min(max(best, 0.02 * radius), 0.5 * radius)
     while step > 1e-4 * radius:
@@ -82,18 +69,7 @@ def _move_to_clearance(context: HopContext, pose: Floats) -> None:
 
 @compiled
 def pose_with_room(context: HopContext, pose: Floats, leaving: bool) -> Floats:
-    """Return a pose near one that touches obstacles, with more clearance and a free hop between the two.
-
-    A copy of `pose` where it does not touch, or where no such pose is found. Where a body touches, no cell is free: a
-    search must begin and end a little away from the wall.
-
-    Parameters
-    ----------
-    context : the body among its obstacles.
-    pose : (3,) x, y of the body's centre in squares, table frame, radians. The result has the same form and the same
-        angle.
-    leaving : whether the hop leads from `pose` to the result; otherwise it leads from the result to `pose`.
-    """
+    """Return a pose near one that touches obstacles, with more clearance and a free hop between the two."""
     best, found, tried = _clearance(context, pose), pose.copy(), pose.copy()
     radius = context.body.radius
     if best > TOUCHING_CLEARANCE * radius:
@@ -116,22 +92,14 @@ def pose_with_room(context: HopContext, pose: Floats, leaving: bool) -> Floats:
 
 @bare
 def _clearance(context: HopContext, pose: Floats) -> float:
-    """Return the distance of the body from the obstacles at a pose, in squares, capped at 0.3 of the body's radius.
-
-    -1.0 if they overlap. `pose` : (3,) x, y of the body's centre in squares, table frame, radians. `context` : the body
-    among its obstacles.
-    """
+    """Return the distance of the body from the obstacles at a pose, in squares, capped at 0.3 of the body's radius."""
     body, c, s = context.body, math.cos(pose[2]), math.sin(pose[2])
     return min(clearance_at(body, context.nearby, pose[0], pose[1], c, s), 0.3 * body.radius)
 
 
 @compiled
 def _skip_poses(context: HopContext, poses: Floats) -> Floats:
-    """Return a subsequence (m, 3) of `poses` (n, 3), the first and the last among it, with free hops between them.
-
-    Poses are x, y of the body's centre in squares, table frame, radians. From each the hop goes as far ahead as
-    doubling and halving finds it free. `context` : the body among its obstacles.
-    """
+    """Return a subsequence (m, 3) of `poses` (n, 3), the first and the last among it, with free hops between them."""
     kept = np.empty_like(poses)
     copy_pose(kept[0], poses[0])
     count, at, last = 1, 0, len(poses) - 1
@@ -156,11 +124,7 @@ def _skip_poses(context: HopContext, poses: Floats) -> Floats:
 
 @compiled
 def _pull_straight(context: HopContext, poses: Floats) -> None:
-    """Move each of `poses`, in place, towards the straight line between its neighbours as far as the hops stay free.
-
-    (n, 3) x, y of the body's centre in squares, table frame, radians; the first and the last stay. `context` : the body
-    among its obstacles.
-    """
+    """Move each of `poses`, in place, towards the straight line between its neighbours as far as the hops stay free."""
     here, step = np.empty(3), np.empty(3)
     for n in range(1, len(poses) - 1):
         before, after = poses[n - 1], poses[n + 1]
@@ -182,15 +146,7 @@ def _pull_straight(context: HopContext, poses: Floats) -> None:
 
 
 def motions_along(context: HopContext, poses: Floats) -> tuple[Motion, ...]:
-    """Return the turns and pushes of a path of poses (n, 3), in order, without those of no size.
-
-    `context` : the body among its obstacles. Poses are x, y of the body's centre in squares, table frame, and radians.
-        Motions are Rotate about that centre and Translate, table frame.
-
-    Raises
-    ------
-    RuntimeError : a hop is not free, so the path was never certified.
-    """
+    """Return the turns and pushes of a path of poses (n, 3), in order, without those of no size."""
     motions: list[Motion] = []
     for here, there in pairwise(poses):
         order = hop(context, here, there)

@@ -55,36 +55,7 @@ class Inside:
 
 
 class MotionSolver:
-    """One planning problem on its way to a MotionPlan.
-
-    Parameters
-    ----------
-    body : the body, made ready to be moved.
-    field : the obstacles.
-    start, goal : poses of the reference point, table frame; the goal may be a region.
-    resolution : cells smaller than this times the field's side are not split.
-    cells : number of cells (boxes of places and angles) for which there is memory.
-
-    Attributes
-    ----------
-    start, end : (3,) poses of the body's centre (x, y in squares, table frame, radians) between which is searched;
-        `end` is (0,) for a region as goal.
-    ends : the same two as the caller gave them. The search may begin and end a little off, where there is more
-        clearance.
-    min_cell : resolution in squares.
-    rounds : number of rounds so far; in each one channel (chain of cells from start to goal) is looked at.
-    track : (n, 3) poses of the path found, before smoothing, of the body's centre as `start`; (0, 3) until one is
-        found.
-    goals : (rows, columns) bool: pixels of the field's raster, row 0 in the south, that are the goal.
-    goal_region : the shapely Polygon or MultiPolygon of a region as goal, squares, table frame; else None.
-    nearby : the obstacle edges by place.
-    region : the same for the complement of the goal region; `nearby` for a goal pose.
-    tree : the cells.
-
-    Raises
-    ------
-    ValueError : the resolution is not positive and finite, or there is no cell.
-    """
+    """One planning problem on its way to a MotionPlan."""
 
     def __init__(
         self, body: MovingBody, field: ObstacleField, start: Pose, goal: Pose | Inside, resolution: float, cells: int
@@ -107,22 +78,15 @@ class MotionSolver:
 
     @cached_property
     def search(self) -> ChannelSearch:
-        """Return the search among the cells, with its estimates of the length to go; made at first use, then kept.
-
-        It holds costs and states by number of cell (1 for one square of path in large free cells), and estimated
-        lengths to the goal in squares by pixel of the field's raster.
-        """
+        """Return the search among the cells, with its estimates of the length to go; made at first use, then kept."""
         largest = self.body.probes[0]
         distances = self.field.disc_distances(self.goals, float(largest[2]))
         return new_channel_search(len(self.tree.child), distances, largest[:2].copy())
 
     def _goal(self, goal: Pose | Inside) -> tuple[Floats, NearbyEdges, npt.NDArray[np.bool_]]:
-        """Return the pose to end at, the complement of the goal region as obstacles, and the goal's pixels.
-
-        The pose is (3,) x, y of the body's centre in squares, table frame, radians; (0,) for a region. For a pose the
-        obstacles themselves stand for the complement. The pixels are a bool mask (rows, columns) of the field's raster,
-        for the centre of the body's largest inscribed disc.
-        """
+        """Return the pose to end at, the complement of the goal region as obstacles, and the goal's pixels."""
+        # The pixels are a bool mask (rows, columns) of the field's raster, for the centre of the body's largest
+        # inscribed disc.
         if isinstance(goal, Pose):
             end = centre_pose(self.body, goal)
             c, s = math.cos(end[2]), math.sin(end[2])
@@ -134,12 +98,9 @@ class MotionSolver:
         return np.empty(0), region.ground(self.body), goals
 
     def solve(self) -> tuple[str, tuple[Motion, ...]]:
-        """Search and split until there is an answer; return the status of a MotionPlan and its motions.
-
-        "found" with the motions in order (Translate and Rotate, table frame, squares and degrees); "impossible"
-        (proved) or "limit" (cells were given up) with (). Call it once: it changes `start`, `end`, `tree`, `rounds`,
-        and `track` if found.
-        """
+        """Search and split until there is an answer; return the status of a MotionPlan and its motions."""
+        # "found" with the motions in order (Translate and Rotate, table frame, squares and degrees); "impossible"
+        # (proved) or "limit" (cells were given up) with ().
         context = self._hop_context()
         direct = np.array([self.start, self.end]) if len(self.end) else None
         if direct is not None and hop(context, *direct) != BLOCKED:
@@ -164,19 +125,12 @@ class MotionSolver:
 
     @property
     def is_small(self) -> bool:
-        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it.
-
-        Its diameter, twice the radius, is compared with the size of the smallest cells, both in squares.
-        """
+        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it."""
         return 2.0 * self.body.radius < SMALL_BODY_CELLS * self.min_cell
 
     @cached_property
     def is_proved_by_disc(self) -> bool:
-        """Whether the disc within the body surely cannot pass, and so the body cannot; False proves nothing.
-
-        A goal in which the body lies tightly leaves the cells undecided, however solid the wall before it is.
-        Computed at first use.
-        """
+        """Whether the disc within the body surely cannot pass, and so the body cannot; False proves nothing."""
         goal = shapely.Point(self._disc_centre_at(self.ends[1])) if len(self.end) else self.goal_region
         return is_cut_off(self._disc_room, goal)
 
@@ -197,15 +151,7 @@ class MotionSolver:
         return self.field.bounds + squares * np.array([-1.0, -1.0, 1.0, 1.0])
 
     def solve_by_discs(self) -> tuple[str, tuple[Motion, ...]]:
-        """Decide, by the discs within and about the body, what the cells left undecided; return status and motions.
-
-        "impossible" and () where the inscribed disc cannot pass; "found" and the motions where the enclosing disc can,
-        with `track` set; else "limit" and ().
-
-        Raises
-        ------
-        ValueError : the discs decide nothing either, and the body is smaller than a cell.
-        """
+        """Decide, by the discs within and about the body, what the cells left undecided; return status and motions."""
         if self.is_proved_by_disc:
             self._decided_by_disc = True
             return "impossible", ()
@@ -222,15 +168,7 @@ class MotionSolver:
         return "limit", ()
 
     def _path_by_disc(self, obstacles: Any, bounds: Floats) -> Floats | None:
-        """Return poses (n, 3) from start to goal where the enclosing disc fits between them; None if none are found.
-
-        x, y of the body's centre in squares, table frame, radians.
-
-        Parameters
-        ----------
-        obstacles : shapely geometry, squares, table frame.
-        bounds : (4,) x0, y0, x1, y1 that the centre of the disc cannot leave; None is returned where they are empty.
-        """
+        """Return poses (n, 3) from start to goal where the enclosing disc fits between them; None if none are found."""
         if bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
             return None
         start, end = ((float(pose[0]), float(pose[1])) for pose in (self.start, self.end))
@@ -243,28 +181,20 @@ class MotionSolver:
         return None if any(hop(context, a, b) == BLOCKED for a, b in pairwise(poses)) else poses
 
     def _hop_context(self) -> HopContext:
-        """Return the body, the obstacle edges by place and the surface that it must not cross, squares, table frame.
-
-        With scratch memory of its own.
-        """
+        """Return the body, the obstacle edges by place and the surface that it must not cross, squares, table frame."""
         return new_hop_context(self.body, self.nearby, self.field.surface)
 
     def _disc_centre_at(self, pose: Floats) -> tuple[float, float]:
-        """Return where the centre of the largest inscribed disc is at a pose of the body's centre: x, y in squares.
-
-        Table frame. `pose` : (3,) x, y in squares, radians.
-        """
+        """Return where the centre of the largest inscribed disc is at a pose of the body's centre: x, y in squares."""
         x, y, angle = pose.tolist()
         px, py = self.body.probes[0, :2].tolist()
         c, s = math.cos(angle), math.sin(angle)
         return x + c * px - s * py, y + s * px + c * py
 
     def reached_places(self) -> Floats:
-        """Return where the centre of the body's largest inscribed disc got to: (n, 2) x, y in squares, the start first.
-
-        Table frame. These are the middles of settled cells, in order of their numbers. A cell whose middle is not free
-        may be anywhere beside a wall and is left out; so is one that the disc cannot get to, where that is the proof.
-        """
+        """Return where the centre of the body's largest inscribed disc got to."""
+        # (n, 2) x, y in squares, the start first.
+        # These are the middles of settled cells, in order of their numbers.
         known = self.search.seen[0]
         leaf, free = self.tree.child[:known] < 0, self.tree.kind[:known] <= CELL_CENTRE_FREE
         settled = np.nonzero((self.search.state[:known] >= NODE_SETTLED) & leaf & free)[0]

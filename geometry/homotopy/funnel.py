@@ -17,32 +17,16 @@ Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the
 
 
 class Funnel(NamedTuple):
-    """Scratch for one tightening through at most (size - 8) / 4 portals.
+    """Scratch for one tightening through at most (size - 8) / 4 portals."""
 
-    Corners are numbered along the path: 0 is the start, then come the left and right ends of the portals in turn, then
-    the goal.
-
-    Attributes
-    ----------
-    x : (size,) x of the corners, in squares from the screen's south-west corner.
-    y : (size,) y of the corners, likewise.
-    via : (size,) the number of the corner before each, on the shortest path to it.
-    queue : (2 size,) the funnel: numbers of corners, from its left end over the apex to its right end.
-    """
-
-    x: Floats
-    y: Floats
-    via: Ints
-    queue: Ints
+    x: Floats  # (size,) x of the corners, in squares from the screen's south-west corner
+    y: Floats  # (size,) y of the corners, likewise
+    via: Ints  # (size,) the number of the corner before each, on the shortest path to it
+    queue: Ints  # (2 size,) the funnel: numbers of corners, from its left end over the apex to its right end
 
 
 def new_funnel(portals: int) -> Funnel:
-    """Return scratch, not initialised, for words of at most `portals` signed portals.
-
-    It holds room for the corners (the ends of the portals): x, y, the corner before each, and the funnel.
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
-    strips (rows of free squares) in neighbouring rows.
-    """
+    """Return scratch, not initialised, for words of at most `portals` signed portals."""
     size = 4 * portals + 8
     return Funnel(
         np.empty(size),
@@ -56,29 +40,9 @@ def new_funnel(portals: int) -> Funnel:
 def tighten_word(
     lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, buffers: Funnel, out: Floats
 ) -> int:
-    """Write the corners of the shortest path through a word's portals to `out`, and return their number.
-
-    A point may use whole squares. A body moves on the lines between the centres of its squares and in the meshes of
-    four, so each portal counts twice: where the path leaves the lower line of centres and where it meets the upper one.
-    It is then inset: half a square shorter at each end. A word is reduced when no symbol stands next to its negative. A
-    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    lefts, rights, lines : (p,) of the portals: the first and the last column, included, and the row below.
-    body : True for a body, whose path keeps to the lines between centres of squares; False for a point.
-    word : signed portals (index plus 1, negative when crossed southwards); the first `size` are read. Must be reduced,
-        and lead from the start's strip to the goal's.
-    size : the number of symbols of the word; 0 for a straight line.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    buffers : scratch, of at least `size` portals.
-    out : (4 size + 8 or more, 2) float64; its first rows are written with points (x, y) in squares, both ends included.
-
-    Returns
-    -------
-    int
-        The number of corners written; equal points in a row are written once.
-    """
+    """Write the corners of the shortest path through a word's portals to `out`, and return their number."""
+    # A body moves on the lines between the centres of its squares and in the meshes of four, so each portal counts
+    # twice: where the path leaves the lower line of centres and where it meets the upper one.
     xs, ys, via = buffers.x, buffers.y, buffers.via
     xs[0], ys[0] = ends[0], ends[1]
     inset, times = (0.5, 2) if body else (0.0, 1)
@@ -106,20 +70,7 @@ def tighten_word(
 
 @bare
 def pull_tight(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
-    """Fill `via` with the number of the corner before each one on the shortest path to it.
-
-    Corner 0 is the start, then come the left and right ends of the portals in turn, as seen along the path (left ones
-    have odd numbers), and `last` is the goal. `queue` holds the funnel: its entries from `left` to `apex` are the left
-    chain, those from `apex` to `right` the right one. A portal is the overlap of two strips (rows of free squares) in
-    neighbouring rows.
-
-    Parameters
-    ----------
-    xs, ys : the corners, in squares; read up to index `last`.
-    via : written at 1 to `last`.
-    queue : scratch, of at least 2 last + 2 entries.
-    last : the number of the goal; odd.
-    """
+    """Fill `via` with the number of the corner before each one on the shortest path to it."""
     left = apex = right = queue.shape[0] // 2
     queue[apex] = 0
     for corner in range(1, last + 1):
@@ -148,25 +99,13 @@ def pull_tight(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> Non
 
 @bare
 def side_of_ray(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
-    """Return a positive number when (x, y) lies left of the ray from corner a through corner b, negative when right.
-
-    It is 0 on the ray's line: twice the signed area of the triangle, in square squares. `xs` and `ys` are the corners'
-    coordinates in squares, `a` and `b` indices into them.
-    """
+    """Return a positive number when (x, y) lies left of the ray from corner a through corner b, negative when right."""
     return float((xs[b] - xs[a]) * (y - ys[a]) - (ys[b] - ys[a]) * (x - xs[a]))
 
 
 @bare
 def write_corners(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
-    """Write the path to corner `last`, without equal corners in a row, and return the number of corners.
-
-    Parameters
-    ----------
-    xs, ys : the corners, in squares.
-    via : for each corner the number of the one before, as `pull_tight` fills it.
-    last : the number of the corner at which the path ends; it begins at corner 0.
-    out : (n, 2) written from row 0 on: the points (x, y) from start to goal, in the unit of `xs` and `ys`.
-    """
+    """Write the path to corner `last`, without equal corners in a row, and return the number of corners."""
     size, corner = 1, last
     while corner != 0:
         corner = 0 + via[corner]
@@ -185,10 +124,7 @@ def write_corners(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> 
 
 @bare
 def measure_line(line: Floats, size: int) -> float:
-    """Return the length of a polyline's first `size` corners, in the unit of its coordinates; 0 for one corner.
-
-    `line` is (n, 2), a point (x, y) a row.
-    """
+    """Return the length of a polyline's first `size` corners, in the unit of its coordinates; 0 for one corner."""
     total = 0.0
     for k in range(1, size):
         total += step_length(line[k, 0] - line[k - 1, 0], line[k, 1] - line[k - 1, 1])
@@ -197,8 +133,5 @@ def measure_line(line: Floats, size: int) -> float:
 
 @bare
 def step_length(run: float, rise: float) -> float:
-    """Return the Euclidean length of a step of `run` to the east and `rise` to the north, in their unit.
-
-    Much faster than hypot, and nothing here is near overflow.
-    """
+    """Return the Euclidean length of a step of `run` to the east and `rise` to the north, in their unit."""
     return float(np.sqrt(run * run + rise * rise))

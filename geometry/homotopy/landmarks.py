@@ -17,71 +17,36 @@ LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; chosen, no measurement 
 
 
 class Landmarks(NamedTuple):
-    """Precomputed routing data of a pathgraph with n nodes and m chains.
+    """Precomputed routing data of a pathgraph with n nodes and m chains."""
 
-    A chain is a path over the skeleton between two nodes, which are the skeleton's junctions and ends. An arc is a
-    chain with a direction: its code is twice the chain's number, plus 1 when walked backwards, from its last cell to
-    its first (see astar.py). A landmark is a node from which the distances to all others are kept. Integers are int32.
-
-    Attributes
-    ----------
-    symbol : (cells,) for each chain cell, the signed portal between it and the next cell of its chain; 0 within a row.
-    word : (size,) the reduced words, from first to last cell (signed portals, negative when crossed southwards), of all
-        whole chains, one after the other.
-    spelt : (m + 1,) the index in `word` at which each chain's word starts.
-    length : (m,) the length of each chain when pulled tight between its ends, in squares.
-    place : (n, 2) the nodes' centres (x, y), in squares from the screen's south-west corner.
-    head : (n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none, and
-        for a chain that leads back to its own node.
-    arc : (n, 4) the code of that arc; 0 for none.
-    step : (n, 4) the length of that arc, in squares; 0 for none.
-    sight : (n, landmarks) distances over the pathgraph from the landmarks, in squares; infinite where there is no path.
-    """
-
+    # (cells,) for each chain cell, the signed portal between it and the next cell of its chain; 0 within a row
     symbol: Ints
+    # (size,) the reduced words, from first to last cell (signed portals, negative when crossed southwards), of all
+    # whole chains, one after the other
     word: Ints
-    spelt: Ints
-    length: Floats
-    place: Floats
+    spelt: Ints  # (m + 1,) the index in `word` at which each chain's word starts
+    length: Floats  # (m,) the length of each chain when pulled tight between its ends, in squares
+    place: Floats  # (n, 2) the nodes' centres (x, y), in squares from the screen's south-west corner
+    # (n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none, and for
+    # a chain that leads back to its own node
     head: Ints
-    arc: Ints
-    step: Floats
+    arc: Ints  # (n, 4) the code of that arc; 0 for none
+    step: Floats  # (n, 4) the length of that arc, in squares; 0 for none
+    # (n, landmarks) distances over the pathgraph from the landmarks, in squares; infinite where there is no path
     sight: Floats
 
 
 class Anchor(NamedTuple):
-    """The point of the pathgraph at which the steepest ascent from a square meets the skeleton.
+    """The point of the pathgraph at which the steepest ascent from a square meets the skeleton."""
 
-    Attributes
-    ----------
-    chain : the number of the chain (at a node: of one of its chains), or -1 at a node without chains.
-    position : the index of the cell on its chain, from 0 at the chain's first cell; 0 when there is no chain.
-    node : the number of the node met, or -1 inside a chain.
-    cell : the index of the cell in the flat padded screen, (row + 1) * width + column + 1.
-    """
-
-    chain: int
-    position: int
-    node: int
-    cell: int
+    chain: int  # the number of the chain (at a node: of one of its chains), or -1 at a node without chains
+    position: int  # the index of the cell on its chain, from 0 at the chain's first cell; 0 when there is no chain
+    node: int  # the number of the node met, or -1 inside a chain
+    cell: int  # the index of the cell in the flat padded screen, (row + 1) * width + column + 1
 
 
 def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, body: bool) -> Landmarks:
-    """Return what routing precomputes on a pathgraph: words, lengths and arcs of its chains, and landmark distances.
-
-    Lengths and distances are in squares. Words are of signed portals (index plus 1, negative when crossed southwards).
-    The arcs out of node v, to the east, north, west and south, stand in row v of `head`, `arc` and `step`: node led to,
-    code, length.
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int, squared clearances in squared half squares; only the shape is read.
-    chains : the edges of the pathgraph, with their nodes and cells.
-    strips : the strips of the same free space (maximal horizontal rows), and the portals between those of neighbouring
-        rows.
-    body : True for a body, whose centre keeps to the lines between centres of squares; False for a point.
-    """
+    """Return what routing precomputes on a pathgraph: words, lengths and arcs of its chains, and landmark distances."""
     width = square.shape[1]
     symbol = np.zeros(chains.cells.shape[0], np.int32)
     length = np.empty(chains.ends.shape[0])
@@ -102,21 +67,7 @@ def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, 
 
 @bare
 def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
-    """Fill `symbol` with the signed portal between each chain cell and the next of its chain; 0 within a row.
-
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A cell's index is (row + 1) *
-    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph (whose nodes are the junctions and
-    ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    start, cells : (m + 1,) and (cells,): the cells of chain c are cells[start[c]] to cells[start[c + 1] - 1], flat
-        padded indices.
-    row, up, left : of the strips: the first strip of each row, the first portal of each strip upwards, the first
-        column of each portal (maximal horizontal rows of free squares; their overlaps with the next row).
-    width : columns of the padded screen.
-    symbol : (cells,) written, but for the last cell of each chain.
-    """
+    """Fill `symbol` with the signed portal between each chain cell and the next of its chain; 0 within a row."""
     for chain in range(start.shape[0] - 1):
         for k in range(start[chain], start[chain + 1] - 1):
             symbol[k] = symbol_between(row, up, left, 0 + cells[k], 0 + cells[k + 1], width)
@@ -138,26 +89,7 @@ def measure_chains(
     out: Floats,
     funnel: Funnel,
 ) -> None:
-    """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
-
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph
-    (whose nodes are the junctions and ends of the skeleton), with its cells. A word is reduced when no symbol stands
-    next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    start, cells : (m + 1,) and (cells,): the cells of chain c are cells[start[c]] to cells[start[c + 1] - 1], flat
-        padded indices.
-    symbol : (cells,) the signed portal after each cell, 0 for none.
-    left, right, line : (p,) the first and the last column of each portal, included, and the row below it.
-    body : True for a body, which keeps to the lines between centres of squares; False for a point.
-    width : columns of the padded screen.
-    length : (m,) written, in squares.
-    words : written: the signed portals (index plus 1, negative when crossed southwards) of all chains, one chain after
-        the other.
-    spelt : (m + 1,) 0 at first, written: the index in `words` at which each chain's word starts.
-    out, funnel : scratch, for the longest chain.
-    """
+    """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares."""
     for chain in range(length.shape[0]):
         word, size = words[spelt[chain] :], 0
         first, last = start[chain], start[chain + 1] - 1
@@ -172,18 +104,7 @@ def measure_chains(
 
 @bare
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
-    """Fill the arcs out of every node. A chain from a node back to itself gives no arc.
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    leave : (n, 4) the chain that leaves a node to the east, north, west, south; -1 for none.
-    ends : (m, 2) the first and last node of each chain.
-    length : (m,) of the chains, in squares.
-    head, arc, step : (n, 4) written where there is an arc: the node it leads to, its code (2 chain, plus 1 when walked
-        backwards), its length in squares.
-    """
+    """Fill the arcs out of every node. A chain from a node back to itself gives no arc."""
     for node in range(leave.shape[0]):
         for slot in range(4):
             chain = leave[node, slot]
@@ -194,16 +115,7 @@ def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, st
 
 
 def landmark_distances(head: Ints, step: Floats) -> Floats:
-    """Return the distances of all nodes from the landmarks, (n, landmarks) float64, in squares.
-
-    They are infinite where there is no path. Each landmark is the node that is furthest from those before it (Goldberg
-    and Harrelson 2005); there are LANDMARK_COUNT, or n if that is less.
-
-    Parameters
-    ----------
-    head : (n, 4) the node at the other end of each arc out of a node; -1 for none.
-    step : (n, 4) the length of that arc, in squares.
-    """
+    """Return the distances of all nodes from the landmarks, (n, landmarks) float64, in squares."""
     n = len(head)
     sight = np.full((min(LANDMARK_COUNT, n), n), np.inf)
     key, node = np.empty(4 * n + 8), np.empty(4 * n + 8, np.int32)
@@ -221,16 +133,7 @@ def landmark_distances(head: Ints, step: Floats) -> Floats:
 
 @bare
 def fill_distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
-    """Fill `out` with the distances of all nodes from node `spot` by Dijkstra's algorithm, in squares.
-
-    Parameters
-    ----------
-    head : (n, 4) the node at the other end of each arc out of a node; -1 for none.
-    step : (n, 4) the length of that arc, in squares.
-    spot : the number of the node from which distances are measured.
-    out : (n,) infinite at first, written; it stays infinite where no path leads.
-    key, node : (4 n + 8,) scratch for the heap.
-    """
+    """Fill `out` with the distances of all nodes from node `spot` by Dijkstra's algorithm, in squares."""
     out[spot] = 0.0
     size = push(key, node, 0, 0.0, spot)
     while size > 0:
@@ -249,27 +152,7 @@ def fill_distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: F
 def ascend(
     cell: int, heights: Heights, states: Flags, width: int, row: Ints, up: Ints, left: Ints, word: Ints
 ) -> tuple[int, int]:
-    """Climb from a cell to the skeleton along the steepest ascent, writing the portals crossed to `word`.
-
-    A word is reduced when no symbol stands next to its negative.
-
-    Parameters
-    ----------
-    cell : the index, in the flat padded screen, (row + 1) * width + column + 1, of a cell where the body may be.
-    heights : (cells,) squared clearances in squared half squares, flat and padded.
-    states : (cells,) the skeleton's states, 0 off the skeleton.
-    width : columns of the padded screen.
-    row, up, left : of the strips: the first strip of each row, the first portal of each strip upwards, the first
-        column of each portal (maximal horizontal rows of free squares; their overlaps with the next row).
-    word : written from index 0 on: the reduced word of signed portals (index plus 1, negative when crossed southwards)
-        from the cell to the skeleton.
-
-    Returns
-    -------
-    (int, int)
-        The skeleton cell (flat padded index), and the size of the word. A size equal to the length of `word` says that
-        there was not enough room. For a cell of the skeleton: the cell itself, and 0.
-    """
+    """Climb from a cell to the skeleton along the steepest ascent, writing the portals crossed to `word`."""
     size = 0
     while states[cell] == 0:
         higher = steepest(cell, heights, width)
@@ -280,20 +163,7 @@ def ascend(
 
 @bare
 def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """Return the anchor of a skeleton cell: its chain and position on the pathgraph, or its node.
-
-    It holds the number of the chain (-1 at a node without chains), the position, from 0, of the cell on it, the number
-    of the node (-1 inside a chain), and the cell.
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    cell : index, in the flat padded screen, (row + 1) * width + column + 1, of a cell of the skeleton.
-    states : (cells,) the skeleton's states, flat: links to the neighbours, and flags (see skeleton.py).
-    width : columns of the padded screen.
-    node, leave, start, cells : attributes of `Chains`: the nodes' cells, the chains that leave each node, where the
-        cells of each chain begin, and these cells.
-    """
+    """Return the anchor of a skeleton cell: its chain and position on the pathgraph, or its node."""
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
     direction, steps, here = first_direction(int(states[cell])), 0, cell
@@ -311,19 +181,7 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
 
 @bare
 def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """Return the anchor of a node's cell: an end of one of its chains if it has any.
-
-    It holds that chain, the position of its end (0, or the index of its last cell), the number of the node, and the
-    cell.
-    Of several chains that of the last direction counts, of east, north, west, south. Without chains the anchor's chain
-    is -1 and its position 0.
-
-    Parameters
-    ----------
-    cell : index of the node's cell in the flat padded screen, (row + 1) * width + column + 1.
-    node, leave, start, cells : attributes of `Chains`: the nodes' cells, the chains that leave each node, where the
-        cells of each chain begin, and these cells.
-    """
+    """Return the anchor of a node's cell: an end of one of its chains if it has any."""
     number, found, position = find(node, cell), -1, 0
     for direction in range(4):
         chain = 0 + leave[number, direction]
@@ -335,20 +193,7 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 
 @bare
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
-    """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size.
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
-    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    start : (m + 1,) where the cells of each chain begin.
-    symbol : (cells,) the signed portal after each chain cell, 0 for none.
-    chain : the number of the chain.
-    begin, end : indices of cells on the chain, from 0 at its first cell.
-    word : a reduced word of signed portals (index plus 1, negative when crossed southwards), extended; inverses cancel.
-    size : the number of its symbols before. A returned size equal to the array's length says that there is no room.
-    """
+    """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size."""
     first = start[chain]
     if begin <= end:
         for k in range(first + begin, first + end):
@@ -361,19 +206,7 @@ def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word:
 
 @bare
 def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, size: int) -> int:
-    """Append part of a reduced word, or its inverse, to a reduced word; return the new size.
-
-    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    other : the word to append, signed portals (index plus 1, negative when crossed southwards); its entries from
-        `first` up to `last`, excluded, are used.
-    first, last : the index of the first entry that is used, and the one behind the last.
-    backwards : whether to append the inverse: the entries in reverse order, with their signs changed.
-    word : the word that is extended; changed.
-    size : the number of its symbols before. When it has no room, the returned size equals the length of its array.
-    """
+    """Append part of a reduced word, or its inverse, to a reduced word; return the new size."""
     if backwards:
         while last > first and size > 0 and word[size - 1] == other[last - 1]:
             last, size = last - 1, size - 1

@@ -12,22 +12,8 @@ WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the
 
 
 def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
-    """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order.
-
-    It is empty when the line stays in one strip. The line may touch walls and their corners. A signed portal is a
-    portal's index plus 1, negative when it is crossed southwards. A word is reduced when no symbol stands next to its
-    negative.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    points : (x, y) in squares from the screen's south-west corner, at least one.
-
-    Raises
-    ------
-    ValueError
-        When the line starts in a blocked square or leaves free space.
-    """
+    """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order."""
+    # It is empty when the line stays in one strip.
     line = [(float(x), float(y)) for x, y in points]
     strip, row = first_strip(strips, line[0])
     symbols: list[int] = []
@@ -50,34 +36,13 @@ def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
 
 
 def word_of_cells(strips: Strips, cells: list[int], width: int) -> Ints:
-    """Return the signed portals crossed from cell to cell, (n,) int32, not reduced: inverses may follow each other.
-
-    Cells are indices in the flat padded grid of ``width`` columns, each an edge neighbour of the one before.
-    """
+    """Return the signed portals crossed from cell to cell, (n,) int32, not reduced: inverses may follow each other."""
     symbols = [symbol_between(strips.row, strips.up, strips.left, a, b, width) for a, b in pairwise(cells)]
     return np.array([s for s in symbols if s], np.int32)
 
 
 def first_strip(strips: Strips, point: XY) -> tuple[int, int]:
-    """Return the strip and the row of a line's first point.
-
-    A point between two rows belongs to the northern one, a point on the screen's northern edge to the last row.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    point : (x, y) in squares from the screen's south-west corner.
-
-    Returns
-    -------
-    (int, int)
-        The number of the strip, and its row, counted from 0 in the south.
-
-    Raises
-    ------
-    ValueError
-        When the point lies in a blocked square.
-    """
+    """Return the strip and the row of a line's first point."""
     row = min(int(point[1]), len(strips.row) - 2)
     strip = int(strip_at(strips.row, strips.low, row, int(point[0])))
     if strips.row[row] == strips.row[row + 1] or not strips.low[strip] <= point[0] <= strips.high[strip] + 1:
@@ -86,23 +51,7 @@ def first_strip(strips: Strips, point: XY) -> tuple[int, int]:
 
 
 def symbol_into_square(strips: Strips, strip: int, row: int, point: XY) -> int:
-    """Return the signed portal from the strip in which a line ends to that of its last point's square, 0 if the same.
-
-    A point on a line between two rows belongs to the upper one, from whichever side the line comes: words between the
-    same ends must end in the same strip. If the square above is blocked, the line ends in the strip in which it is, and
-    0 is returned. A signed portal is a portal's index plus 1, negative when it is crossed southwards.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    strip, row : the strip in which the line ends, and its row, from 0 in the south.
-    point : the line's last point, (x, y) in squares from the screen's south-west corner.
-
-    Raises
-    ------
-    ValueError
-        When the last point is a corner between two blocked squares and the line comes from the wrong side.
-    """
+    """Return the signed portal from the strip in which a line ends to that of its end's square, 0 if the same."""
     column, line = int(point[0]), min(int(point[1]), len(strips.row) - 2)
     if strips.row[line] == strips.row[line + 1]:
         return 0
@@ -118,14 +67,7 @@ def symbol_into_square(strips: Strips, strip: int, row: int, point: XY) -> int:
 
 
 def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None:
-    """Return the point at which the segment p-q leaves the strip of p; None when it ends in the strip.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    strip, row : the strip in which p lies, and its row, from 0 in the south.
-    p, q : (x, y) in squares from the screen's south-west corner, as is the point that is returned.
-    """
+    """Return the point at which the segment p-q leaves the strip of p; None when it ends in the strip."""
     low, high = float(strips.low[strip]), float(strips.high[strip] + 1)
     last = 1.0
     for at, by, least, most in ((p[0], q[0] - p[0], low, high), (p[1], q[1] - p[1], float(row), row + 1.0)):
@@ -140,23 +82,7 @@ def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None
 
 
 def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
-    """Return the signed portal at p, on the edge of a strip, through which the segment p-q gets furthest.
-
-    It is positive when the portal leads to the row above, negative when to the row below. Of several as good the
-    greatest number is returned. A signed portal is a portal's
-    index plus 1, negative when it is crossed southwards.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    strip, row : the strip that the segment leaves, and its row, from 0 in the south.
-    p, q : (x, y) in squares from the screen's south-west corner; p lies on the strip's northern or southern edge.
-
-    Raises
-    ------
-    ValueError
-        When no portal at p lets the segment go on.
-    """
+    """Return the signed portal at p, on the edge of a strip, through which the segment p-q gets furthest."""
     choices: list[tuple[float, int]] = []
     for sign, bounds, next_strip, step in ((1, strips.up, strips.upper, 1), (-1, strips.down, strips.lower, -1)):
         if abs(p[1] - (row + (sign > 0))) > WALL_TOLERANCE:
@@ -173,12 +99,7 @@ def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
 
 
 def join_words(*words: Ints) -> Ints:
-    """Return the words one after the other, as one reduced word: (n,) int32 of signed portals, a new array.
-
-    A signed portal followed by its negative is left out. Without words, or when all cancel, the result is empty. A
-    signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
-    strips (rows of free squares) in neighbouring rows.
-    """
+    """Return the words one after the other, as one reduced word: (n,) int32 of signed portals, a new array."""
     whole = np.empty(sum(len(word) for word in words) + 1, np.int32)
     size = 0
     for word in words:
@@ -188,16 +109,6 @@ def join_words(*words: Ints) -> Ints:
 
 
 def crossings_of(strips: Strips, word: Ints) -> tuple[int, ...]:
-    """Return the signed crossing numbers of a reduced word, in its order: the signature of its class.
-
-    Portals of the spanning forest have no number and are left out. A number is negative where the portal is crossed
-    southwards. Words with the same ends are of one class exactly when their signatures are equal. A word is reduced
-    when no symbol stands next to its negative.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    word : (n,) int, signed portals.
-    """
+    """Return the signed crossing numbers of a reduced word, in its order: the signature of its class."""
     numbers = strips.crossing[np.abs(word) - 1] * np.sign(word)
     return tuple(numbers[numbers != 0].tolist())

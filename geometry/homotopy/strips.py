@@ -20,58 +20,26 @@ from geometry.kernels.jit import bare
 
 
 class Strips(NamedTuple):
-    """The n strips of a screen, ordered by (row, column), and its p portals, ordered by (lower row, column).
+    """The n strips of a screen, ordered by (row, column), and its p portals, ordered by (lower row, column)."""
 
-    Rows and columns are those of the screen, without padding, row 0 in the south. A signed portal is its index plus 1,
-    negative when it is crossed downwards. All arrays are int32.
-
-    Attributes
-    ----------
-    row : (rows + 1,) the number of the first strip of each row; the strips of row r are row[r] to row[r + 1] - 1.
-    low : (n,) the first (western) column of each strip.
-    high : (n,) the last (eastern) column of each strip, included.
-    up : (n + 1,) the first portal from each strip to the row above; the portals of strip s are up[s] to up[s + 1] - 1.
-    down : (n + 1,) the first portal from each strip to the row below, in the same way.
-    left : (p,) the first (western) column of each portal.
-    right : (p,) the last (eastern) column of each portal, included.
-    lower : (p,) the strip below (south of) each portal.
-    upper : (p,) the strip above (north of) each portal.
-    line : (p,) the row of the strip below each portal; the portal lies at y = line + 1, from x = left to x = right + 1.
-    crossing : (p,) the crossing number of each portal, counted from 1; 0 for portals of the spanning forest.
-    exit : (n,) the signed portal by which every path out of a dead-end strip leaves it; 0 for all other strips.
-    """
-
-    row: Ints
-    low: Ints
-    high: Ints
+    row: Ints  # (rows + 1,) the number of the first strip of each row; the strips of row r are row[r] to row[r + 1] - 1
+    low: Ints  # (n,) the first (western) column of each strip
+    high: Ints  # (n,) the last (eastern) column of each strip, included
+    # (n + 1,) the first portal from each strip to the row above; the portals of strip s are up[s] to up[s + 1] - 1
     up: Ints
-    down: Ints
-    left: Ints
-    right: Ints
-    lower: Ints
-    upper: Ints
+    down: Ints  # (n + 1,) the first portal from each strip to the row below, in the same way
+    left: Ints  # (p,) the first (western) column of each portal
+    right: Ints  # (p,) the last (eastern) column of each portal, included
+    lower: Ints  # (p,) the strip below (south of) each portal
+    upper: Ints  # (p,) the strip above (north of) each portal
+    # (p,) the row of the strip below each portal; the portal lies at y = line + 1, from x = left to x = right + 1
     line: Ints
-    crossing: Ints
-    exit: Ints
+    crossing: Ints  # (p,) the crossing number of each portal, counted from 1; 0 for portals of the spanning forest
+    exit: Ints  # (n,) the signed portal by which every path out of a dead-end strip leaves it; 0 for all other strips
 
 
 def find_strips(square: SquaredDistances, level: int) -> Strips:
-    """Return the strips and portals of the cells whose squared clearance is at least a level.
-
-    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int, squared clearances in squared half squares, padded by one cell on each side.
-    level : the least squared clearance of a cell that counts as free, in squared half squares; at least 1.
-
-    Returns
-    -------
-    Strips
-        In unpadded rows and columns; without strips and portals when no cell is free. Strips are numbered by (row,
-        column): first and last column of each, its portals to the row above and below. Portals are numbered by (lower
-        row, column): first and last column, the strips below and above, the crossing number (0 for none).
-    """
+    """Return the strips and portals of the cells whose squared clearance is at least a level."""
     row = np.zeros(square.shape[0] - 1, np.int32)
     count = count_strips(square, level, row)
     low, high = np.empty(count, np.int32), np.empty(count, np.int32)
@@ -102,14 +70,7 @@ def copy_first(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
 
 @bare
 def count_strips(square: SquaredDistances, level: int, row: Ints) -> int:
-    """Return the number of strips; fill `row` with the number of strips up to the end of each row.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int, padded squared clearances in squared half squares.
-    level : the least squared clearance of a free cell.
-    row : (rows + 1,) written but for row[0]: row[i] becomes the number of strips in rows 0 to i - 1.
-    """
+    """Return the number of strips; fill `row` with the number of strips up to the end of each row."""
     total = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
@@ -121,14 +82,7 @@ def count_strips(square: SquaredDistances, level: int, row: Ints) -> int:
 
 @bare
 def fill_strips(square: SquaredDistances, level: int, low: Ints, high: Ints) -> None:
-    """Fill the first and last columns of all strips.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int, padded squared clearances in squared half squares.
-    level : the least squared clearance of a free cell.
-    low, high : (n,) written: the first and the last column of each strip, without padding, both included.
-    """
+    """Fill the first and last columns of all strips."""
     strip = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
@@ -154,18 +108,7 @@ def fill_portals(
     upper: Ints,
     line: Ints,
 ) -> int:
-    """Fill the portals between each row and the next, and return their number.
-
-    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    row : (rows + 1,) the number of the first strip of each row; read, as are the next two.
-    low, high : (n,) the first and the last column of each strip.
-    up, down : (n + 1,) zero at first, written: the first portal from each strip to the row above, and to the row below.
-    left, right, lower, upper, line : written in their first entries: of each portal the first and the last column, the
-        strips below and above, and the row below. Twice as many entries as there are strips are enough.
-    """
+    """Fill the portals between each row and the next, and return their number."""
     found = 0
     for i in range(row.shape[0] - 2):
         a, b = row[i], row[i + 1]
@@ -188,16 +131,7 @@ def fill_portals(
 
 @bare
 def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> None:
-    """Give crossing numbers, from 1 in the order of the portals, to the portals that close a ring of strips.
-
-    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    lower, upper : (p,) the strips below and above each portal.
-    parent : (n,) scratch: a union-find forest over the strips; it must begin as the identity.
-    crossing : (p,) zero at first, written; it stays 0 for portals of the spanning forest, which close no ring.
-    """
+    """Give crossing numbers, from 1 in the order of the portals, to the portals that close a ring of strips."""
     number = 0
     for portal in range(crossing.shape[0]):
         a, b = find_root(parent, lower[portal]), find_root(parent, upper[portal])
@@ -210,20 +144,7 @@ def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> 
 
 @bare
 def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degree: Ints, queue: Ints) -> None:
-    """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none.
-
-    A dead end is a part of free space, without rings, that one portal joins to the rest. A signed portal is a portal's
-    index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips (rows of free squares)
-    in neighbouring rows.
-
-    Parameters
-    ----------
-    up, down : (n + 1,) the first portal from each strip to the row above, and to the row below.
-    lower, upper : (p,) the strips below and above each portal.
-    exits : (n,) zero at first, written: the signed portal that leads out of a dead-end strip; it stays 0 elsewhere.
-    degree : (n,) the number of portals of each strip; used up.
-    queue : (n,) scratch.
-    """
+    """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none."""
     size = 0
     for strip in range(exits.shape[0]):
         if degree[strip] == 1:
@@ -250,10 +171,7 @@ def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degr
 
 @bare
 def find_root(parent: Ints, strip: int) -> int:
-    """Return the representative of a strip's component, a strip; halve the path to it in the union-find forest.
-
-    `parent` (n,), changed, holds for each strip a strip nearer to its representative, and for that itself.
-    """
+    """Return the representative of a strip's component, a strip; halve the path to it in the union-find forest."""
     while parent[strip] != strip:
         parent[strip] = parent[parent[strip]]
         strip = parent[strip]
@@ -262,16 +180,7 @@ def find_root(parent: Ints, strip: int) -> int:
 
 @bare
 def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
-    """Return the number of the strip in which a square lies.
-
-    The square must be free: of a blocked one some other strip is returned, without an error.
-
-    Parameters
-    ----------
-    rows, lows : the attributes `row` and `low` of `Strips`: the first strip of each row, and the first column of each
-        strip.
-    row, column : those of the square, without padding, from the south-west.
-    """
+    """Return the number of the strip in which a square lies."""
     low, high = 0 + rows[row], rows[row + 1] - 1
     while low < high:
         middle = (low + high + 1) >> 1
@@ -284,19 +193,7 @@ def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
 
 @bare
 def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, width: int) -> int:
-    """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row.
-
-    Positive when `other` is the northern cell, negative when it is the southern. Both cells must be free. A signed
-    portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips
-    (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    rows, up, left : the attributes `row`, `up` and `left` of `Strips`: the first strip of each row, the first portal of
-        each strip upwards, the first column of each portal.
-    cell, other : indices of the cells in the flat padded screen, (row + 1) * width + column + 1.
-    width : columns of the padded screen.
-    """
+    """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row."""
     step = other - cell
     if step == 1 or step == -1:
         return 0
@@ -314,18 +211,7 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
 
 @bare
 def append_symbol(word: Ints, size: int, symbol: int) -> int:
-    """Append a signed portal to a reduced word and return the word's new size; an inverse cancels the last symbol.
-
-    A symbol of 0 changes nothing. A word that fills its array is not changed any more: the caller sees by a size equal
-    to the array's length that it needs a larger one. A portal is the overlap of two strips (rows of free squares) in
-    neighbouring rows.
-
-    Parameters
-    ----------
-    word : signed portals, of which the first `size` count; changed.
-    size : the number of symbols before.
-    symbol : the signed portal to append: index plus 1, negative when crossed southwards.
-    """
+    """Append a signed portal to a reduced word and return the word's new size; an inverse cancels the last symbol."""
     if symbol == 0 or size >= word.shape[0]:
         return size
     if size > 0 and word[size - 1] == -symbol:

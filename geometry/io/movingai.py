@@ -26,15 +26,7 @@ HEADER_WORD = re.compile(r"[^ \t]+")
 
 
 class MapError(ValueError):
-    """An error in the text of a map; its message is "line:column-end: error: what".
-
-    Attributes
-    ----------
-    line : the line, counted from 1.
-    column : the first column (letter of the line) where it goes wrong, counted from 1.
-    end : the last such column; by default, and at least, the first.
-    what : what is wrong, in words, without a full stop.
-    """
+    """An error in the text of a map; its message is "line:column-end: error: what"."""
 
     def __init__(self, line: int, column: int, what: str, end: int | None = None) -> None:
         self.line, self.column, self.end, self.what = line, column, max(column, end or column), what
@@ -42,18 +34,11 @@ class MapError(ValueError):
 
 
 class Trip(NamedTuple):
-    """One problem of a scenario file, in squares of the screen (row 0 in the south, (0, 0) at its south-west corner).
+    """One problem of a scenario file, in squares (row 0 in the south, (0, 0) at its south-west corner)."""
 
-    Attributes
-    ----------
-    start : (x, y), the centre of the first square.
-    goal : (x, y), the centre of the last square.
-    octile : the length in squares of the optimal path over eight directions, as the file says; a diagonal step counts
-        sqrt(2).
-    """
-
-    start: tuple[float, float]
-    goal: tuple[float, float]
+    start: tuple[float, float]  # (x, y), the centre of the first square
+    goal: tuple[float, float]  # (x, y), the centre of the last square
+    # The length in squares of the optimal path over eight directions, as the file says; a diagonal step counts sqrt(2)
     octile: float
 
 
@@ -115,17 +100,7 @@ def parse_map(raw: bytes) -> Bools:
 
 
 def _header(lines: list[str]) -> tuple[int, int, int]:
-    """Return the number of lines before the first row (the line "map" included), the height and the width in squares.
-
-    Parameters
-    ----------
-    lines : all lines of the file, without blanks at their ends.
-
-    Raises
-    ------
-    MapError
-        When a line of the head is unknown, missing or given twice.
-    """
+    """Return the number of lines before the first row ("map" included), the height and the width in squares."""
     found: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
         words = list(HEADER_WORD.finditer(line))
@@ -148,14 +123,7 @@ def _header(lines: list[str]) -> tuple[int, int, int]:
 
 
 def _number(line: int, name: str, word: "re.Match[str]") -> int:
-    """Return the whole number above 0 that a word of the head gives, or raise MapError when it gives none.
-
-    Parameters
-    ----------
-    line : the number of the line, counted from 1, for the error.
-    name : the word before it, "height" or "width".
-    word : where it stands in the line, as a match.
-    """
+    """Return the whole number above 0 that a word of the head gives, or raise MapError when it gives none."""
     text = word.group()
     if not re.fullmatch("[0-9]+", text) or len(text) > MAX_HEADER_DIGITS or int(text) == 0:
         raise MapError(line, word.start() + 1, f"{name} must be a whole number above 0, not {text[:20]!r}", word.end())
@@ -163,14 +131,7 @@ def _number(line: int, name: str, word: "re.Match[str]") -> int:
 
 
 def _check_row(number: int, row: str, width: int) -> None:
-    """Raise MapError when a row has unknown letters or another width; return nothing.
-
-    Parameters
-    ----------
-    number : the number of its line in the file, counted from 1.
-    row : its text, without blanks at its end.
-    width : the number of squares that it must have.
-    """
+    """Raise MapError when a row has unknown letters or another width; return nothing."""
     for column, square in enumerate(row[:width], 1):
         if square not in MAP_LETTERS:
             raise MapError(number, column, f"unknown square {square!r}; known are {' '.join(MAP_LETTERS)}")

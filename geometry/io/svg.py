@@ -36,22 +36,7 @@ def draw(
     ends: tuple[XY, XY] | None = None,
     words: Callable[[XY], str] = place,
 ) -> str:
-    """Return an SVG document, as text, that shows a screen, north up.
-
-    It has the free and blocked squares, the skeleton, and on these the pathgraph, passages and routes, with a legend on
-    the right and a scale bar below.
-
-    Parameters
-    ----------
-    screen : the screen; its squares, skeleton and pathgraph are drawn, (0, 0) at its south-west corner.
-    routes : routes to draw; the first one is on top and first in the legend.
-    passages : passages to draw.
-    pathgraph : whether to draw the pathgraph.
-    scale : pixels a square; by default such that the longer side has 960 pixels, but at most 48 pixels a square.
-    ends : (start, goal), each (x, y) in squares, to be marked; those of the first route by default, none without
-        routes.
-    words : how the legend writes a point (x, y) in squares; by default as "(x, y)".
-    """
+    """Return an SVG document, as text, that shows a screen, north up."""
     routes = list(routes)
     rows, columns = screen.shape
     scale = scale or min(MAX_SCALE, PICTURE_SIZE / max(rows, columns))
@@ -78,16 +63,7 @@ def draw(
 
 
 def _squares(screen: Screen, width: float, height: float, scale: float) -> list[str]:
-    """Return the beginning of the document: the page, and the free squares, blocked squares and skeleton on it.
-
-    It is a list of SVG elements as text. The last group is left open: what follows in it is in squares, y to the north.
-
-    Parameters
-    ----------
-    screen : the screen.
-    width, height : size of the page in pixels.
-    scale : pixels a square.
-    """
+    """Return the beginning of the document: the page, and the free squares, blocked squares and skeleton on it."""
     rows, columns = screen.shape
     return [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
@@ -102,25 +78,14 @@ def _squares(screen: Screen, width: float, height: float, scale: float) -> list[
 
 
 def _passage_line(passage: Passage, scale: float) -> str:
-    """Return the SVG of a passage, in squares: a line from its left to its right end, 3 pixels wide at `scale`.
-
-    Left is as seen by a robot that goes from the first side of the passage to the second. `scale` : pixels a square.
-    """
+    """Return the SVG of a passage, in squares: a line from its left to its right end, 3 pixels wide at `scale`."""
     (ax, ay), (bx, by) = passage.a, passage.b
     style = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
     return f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>'
 
 
 def route_line_width(number: int, count: int, scale: float) -> float:
-    """Return the width at which a route is drawn, in squares: at most a quarter, as long as that can be seen.
-
-    Where routes run together, those beneath are a little wider, up to twice the width of the first.
-
-    Parameters
-    ----------
-    number, count : the number of the route, from 0 (drawn on top), and of how many.
-    scale : pixels a square.
-    """
+    """Return the width at which a route is drawn, in squares: at most a quarter, as long as that can be seen."""
     thinnest = min(3.0, max(1.5, 0.125 * scale)) / scale
     return thinnest * (1.0 + number / max(1, count - 1))
 
@@ -131,13 +96,7 @@ def _below_first(routes: Sequence[Route]) -> list[tuple[int, Route]]:
 
 
 def _line_style(number: int, width: float) -> str:
-    """Return the SVG attributes for the colour, dashes and width of a route's line, as text.
-
-    Parameters
-    ----------
-    number : the number of the route, from 0; colour and dashes follow from it, and 28 routes differ.
-    width : width of the line, in the unit of the group that it is drawn in.
-    """
+    """Return the SVG attributes for the colour, dashes and width of a route's line, as text."""
     dashes = ROUTE_DASHES[number // len(ROUTE_COLOURS) % len(ROUTE_DASHES)]
     pattern = " ".join(f"{float(part) * width:g}" for part in dashes.split())
     dashed = f' stroke-dasharray="{pattern}"' if pattern else ""
@@ -145,45 +104,26 @@ def _line_style(number: int, width: float) -> str:
 
 
 def _route_text(number: int, route: Route) -> str:
-    """Return number (`number`, counted from 0, plus 1), length and clearance of a route in words, in squares.
-
-    A clearance that is nan is "not known".
-    """
+    """Return number (`number`, counted from 0, plus 1), length and clearance of a route in words, in squares."""
     clearance = "not known" if isnan(route.clearance) else f"{route.clearance:g}"
     return f"{number + 1}: length {route.length:.3f}, clearance {clearance}"
 
 
 def _line(number: int, route: Route, width: float) -> str:
-    """Return the SVG of a route, in squares (y to the north): a line with a title that gives its length and clearance.
-
-    Parameters
-    ----------
-    number : the number of the route, from 0, which decides on colour and dashes.
-    route : its points are corners (x, y) in squares.
-    width : width of the line in squares.
-    """
+    """Return the SVG of a route, in squares (y to the north)."""
+    # A line with a title that gives its length and clearance.
     points = "L".join(f"{x:g} {y:g}" for x, y in route.points.tolist())
     title = f"<title>route {_route_text(number, route)}</title>"
     return f'<path class="route" d="M{points}" {_line_style(number, width)}>{title}</path>'
 
 
 def _pixel(point: XY, rows: int, scale: float) -> XY:
-    """Return a point (x, y) in squares of the screen as (x, y) in pixels of the picture, from its top left corner.
-
-    Parameters
-    ----------
-    point : (x, y) in squares, y to the north.
-    rows : number of rows of the screen.
-    scale : pixels a square.
-    """
+    """Return a point (x, y) in squares of the screen as (x, y) in pixels of the picture, from its top left corner."""
     return PICTURE_MARGIN + point[0] * scale, PICTURE_MARGIN + (rows - point[1]) * scale
 
 
 def _marks(ends: Sequence[XY]) -> list[str]:
-    """Return the SVG of a ring at the start and a diamond at the goal, as two elements.
-
-    `ends` : (start, goal), each (x, y) in pixels, y downwards.
-    """
+    """Return the SVG of a ring at the start and a diamond at the goal, as two elements."""
     (ax, ay), (bx, by) = ends
     return [
         f'<circle class="start" cx="{ax:g}" cy="{ay:g}" r="6" fill="#ffffff" stroke="#000000" stroke-width="2.5"/>',
@@ -192,14 +132,7 @@ def _marks(ends: Sequence[XY]) -> list[str]:
 
 
 def _scale_bar(longest: float, scale: float, x: float, y: float) -> list[str]:
-    """Return the SVG of a bar of a round number of squares, at most `longest`, with its length in words.
-
-    Parameters
-    ----------
-    longest : in squares; less than 1 counts as 1. The bar has 1, 2 or 5 times a power of ten squares.
-    scale : pixels a square.
-    x, y : its left end in pixels of the picture, y downwards.
-    """
+    """Return the SVG of a bar of a round number of squares, at most `longest`, with its length in words."""
     power = 10.0 ** floor(log10(max(longest, 1.0)))
     squares = max(digit * power for digit in (1, 2, 5) if digit * power <= max(longest, 1.0))
     text = f"{squares:g} square" + "s" * (squares != 1)
@@ -216,15 +149,7 @@ LegendRow = Callable[[float, float], str]
 def _legend(
     routes: Sequence[Route], ends: tuple[XY, XY] | None, words: Callable[[XY], str], pathgraph: bool
 ) -> list[LegendRow]:
-    """Return the rows of the legend, from the top: functions that give a row's SVG at a place (x, y) in pixels.
-
-    Parameters
-    ----------
-    routes : all routes; the first 24 get a row each, the others one row together.
-    ends : (start, goal), each (x, y) in squares; None for no rows of them.
-    words : how a point is written.
-    pathgraph : whether there is a row for the pathgraph.
-    """
+    """Return the rows of the legend, from the top: functions that give a row's SVG at a place (x, y) in pixels."""
     rows: list[LegendRow] = []
     if ends is not None:
         ring, diamond = _marks([(0.0, 0.0), (0.0, 0.0)])
@@ -244,27 +169,15 @@ def _legend(
 
 
 def _legend_row(sample: str, text: str) -> LegendRow:
-    """Return the row of a sample and the text that explains it: a function of x and y, in pixels, that gives its SVG.
-
-    `sample` : SVG elements about (0, 0), in pixels.
-    """
+    """Return the row of a sample and the text that explains it."""
+    # A function of x and y, in pixels, that gives its SVG.
     return lambda x, y: (
         f'<g class="legend" transform="translate({x + 12:g} {y:g})">{sample}<text x="22" y="4">{text}</text></g>'
     )
 
 
 def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
-    """Return the SVG of the pathgraph: chains as lines, then nodes as dots, an element each.
-
-    A chain is an edge of the pathgraph: a line of points along the skeleton between two nodes. Chains come first, each
-    in the order of the graph. Their coordinates are in squares, y to the north: they belong into a group that is scaled
-    and turned over.
-
-    Parameters
-    ----------
-    screen : the screen whose pathgraph is drawn.
-    pixel : the size of a pixel, in squares.
-    """
+    """Return the SVG of the pathgraph: chains as lines, then nodes as dots, an element each."""
     parts = []
     thin, dot = min(0.15, pixel), min(0.3, 2.5 * pixel)
     for _, _, edge in screen.pathgraph.edges(data=True):
@@ -276,13 +189,7 @@ def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
 
 
 def without_straight_points(points: Floats) -> Floats:
-    """Return a polyline (n, 2) without the points between two equal steps; the first and last point stay.
-
-    `points` : corners x, y, in squares or any other unit; the result, (m, 2) in the same order, is in the same.
-
-    A polyline of fewer than three points is returned itself. Steps in one direction of different lengths do not count
-    as equal.
-    """
+    """Return a polyline (n, 2) without the points between two equal steps; the first and last point stay."""
     if len(points) < 3:
         return points
     step = np.diff(points, axis=0)
@@ -292,8 +199,7 @@ def without_straight_points(points: Floats) -> Floats:
 
 
 def rectangles_of(mask: Bools) -> str:
-    """Return SVG path data of the horizontal runs of True squares of a mask (rows, columns): a rectangle for each run.
-
-    In squares, with x along columns and y along rows (row 0 at y = 0 to 1). Empty text for an empty mask.
-    """
+    """Return SVG path data of the horizontal runs of True squares of a mask (rows, columns)."""
+    # A rectangle for each run.
+    # Empty text for an empty mask.
     return "".join(f"M{a} {row}h{b - a}v1h{a - b}z" for row, a, b in runs_along_rows(mask).each())

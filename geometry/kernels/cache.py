@@ -20,13 +20,7 @@ SEAL = b"\nseal of utak: "  # what stands before the digest
 
 
 class SealedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
-    """The cached code of one kernel: an index and a file for each signature.
-
-    Parameters
-    ----------
-    like : numba's own object for these files.
-    elsewhere : the folder of the same files of the installation, which may be read but not written; None for no such.
-    """
+    """The cached code of one kernel: an index and a file for each signature."""
 
     def __init__(self, like: Any, elsewhere: str | None) -> None:
         super().__init__(like._cache_path, like._index_name.removesuffix(".nbi"), like._source_stamp)
@@ -91,10 +85,7 @@ def allow_reading() -> None:
 
 
 def make_safe(dispatcher: Any, source: str) -> None:
-    """Put safe files in the place of the cache files of a dispatcher.
-
-    dispatcher : numba's dispatcher, with a cache; changed in place. source : the file of its function.
-    """
+    """Put safe files in the place of the cache files of a dispatcher."""
     store = dispatcher._cache
     beside = Path(source).with_name("__pycache__")
     is_elsewhere = "NUMBA_CACHE_DIR" not in os.environ and beside.resolve() != Path(store.cache_path).resolve()

@@ -6,15 +6,7 @@ from geometry.kernels.jit import bare
 
 @bare
 def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
-    """Put an item on the heap, in place; return the heap's new size, a number of items.
-
-    Parameters
-    ----------
-    keys, items : (capacity,) float64 and int32: the heap, least key first, with memory for one more.
-    size : number of items on it; a full heap is not noticed.
-    key : the key of the new item, in any unit.
-    item : the item, any whole number of 32 bits (mostly the number of a node).
-    """
+    """Put an item on the heap, in place; return the heap's new size, a number of items."""
     k = size
     while k > 0:
         parent = (k - 1) >> 1
@@ -28,15 +20,7 @@ def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
 
 @bare
 def pop(keys: Floats, items: Ints, size: int) -> tuple[int, int]:
-    """Take the item with the least key off a heap that is not empty, in place; return the item and the new size.
-
-    Its key is not returned: read ``keys[0]`` before the call.
-
-    Parameters
-    ----------
-    keys, items : (capacity,) float64 and int32: the heap, least key first; changed in place.
-    size : number of items on it, 1 or more.
-    """
+    """Take the item with the least key off a heap that is not empty, in place; return the item and the new size."""
     top = 0 + items[0]
     size -= 1
     key, item = keys[size], items[size]

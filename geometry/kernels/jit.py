@@ -21,20 +21,7 @@ PROGRESS_INTERVAL = 5.0  # seconds between two lines of progress; a convention
 
 
 class Kernel(Generic[Arguments, Returned]):
-    """A function that compiles itself when it is first called; called like the function, it returns the same.
-
-    Parameters
-    ----------
-    function : the Python function, plain loops over arrays and numbers.
-    counts_references : whether the compiled code counts references to arrays, which it must when it makes new arrays.
-
-    Attributes
-    ----------
-    function : the Python function, which runs uncompiled.
-    call_unchecked : the compiled function for callers whose arguments always have the very types of its first call. It
-        does not look at types again, which takes most of the time of short, frequent calls. Other types are not noticed
-        and lead to undefined results.
-    """
+    """A function that compiles itself when it is first called; called like the function, it returns the same."""
 
     def __init__(self, function: Callable[Arguments, Returned], counts_references: bool) -> None:
         self.function = function
@@ -47,10 +34,8 @@ class Kernel(Generic[Arguments, Returned]):
         self._numba: Callable[Arguments, Returned] | None = None
 
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
-        """Call the kernel and return what its function returns; compile it first if this is its first call.
-
-        Arguments of other types than before make numba compile it once more, for these.
-        """
+        """Call the kernel and return what its function returns; compile it first if this is its first call."""
+        # Arguments of other types than before make numba compile it once more, for these.
         if self._compiled is None:
             dispatcher = self.dispatcher()
             _compile(dispatcher, args)
@@ -58,11 +43,7 @@ class Kernel(Generic[Arguments, Returned]):
         return self._compiled(*args, **kwargs)
 
     def dispatcher(self) -> Callable[Arguments, Returned]:
-        """Return numba's dispatcher, the object that picks compiled code by the types of arguments.
-
-        It is made when first asked for. When numba is told not to compile (NUMBA_DISABLE_JIT=1) the Python function
-        itself is returned.
-        """
+        """Return numba's dispatcher, the object that picks compiled code by the types of arguments."""
         if self._numba is None:
             self._numba = _dispatcher(self.function, self._counts_references)
             if not hasattr(self._numba, "overloads"):
@@ -70,19 +51,12 @@ class Kernel(Generic[Arguments, Returned]):
         return self._numba
 
     def _first_unchecked(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
-        """Compile for the types of these arguments, put the result in place of `call_unchecked`, and call it.
-
-        Returns what it returns.
-        """
+        """Compile for the types of these arguments, put the result in place of `call_unchecked`, and call it."""
         self.call_unchecked = self.entry(*args, **kwargs)
         return self.call_unchecked(*args, **kwargs)
 
     def entry(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Callable[Arguments, Returned]:
-        """Compile for the types of these arguments, without running, and return the machine code as a function.
-
-        It does not look at types again: later arguments must have the very same types. When numba is told not to
-        compile, the Python function is returned.
-        """
+        """Compile for the types of these arguments, without running, and return the machine code as a function."""
         dispatcher: Any = self.dispatcher()
         _compile(dispatcher, args)
         if not hasattr(dispatcher, "overloads"):
@@ -92,27 +66,18 @@ class Kernel(Generic[Arguments, Returned]):
 
 
 def compiled(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
-    """Decorate a function: return the kernel that stands for it and compiles itself when first called.
-
-    Its arguments are arrays and numbers; it may make arrays and call other kernels, also of other modules.
-    """
+    """Decorate a function: return the kernel that stands for it and compiles itself when first called."""
     return Kernel(function, True)
 
 
 def bare(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
-    """Decorate a function that makes no arrays but views, returns none, and calls only such kernels; return its kernel.
-
-    Numba then counts no references to arrays, which in kernels of many small calls takes most of the time.
-    """
+    """Decorate a function that makes no arrays but views, returns none, and calls only such kernels."""
+    # Return its kernel.
     return Kernel(function, False)
 
 
 def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool) -> Callable[Arguments, Returned]:
-    """Return numba's dispatcher of a function, set up for the cache on disk, linking to other kernels and notices.
-
-    With NUMBA_DISABLE_JIT=1 that is the function itself. `counts_references` : whether the compiled code counts
-    references to arrays, which it must when it makes new arrays.
-    """
+    """Return numba's dispatcher of a function, set up for the cache on disk, linking to other kernels and notices."""
     import numba
 
     _skip_blas_lookup()
@@ -136,11 +101,7 @@ def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool
 
 
 def _skip_blas_lookup() -> None:
-    """Import numba's array functions without its search for BLAS, which would import scipy where that is installed.
-
-    Nothing happens when they are imported already. Kernels multiply no matrices, and that import takes as long as all
-    else of a cold start. Code that multiplies matrices with numba still finds scipy at that time.
-    """
+    """Import numba's array functions without its search for BLAS, which would import scipy where that is installed."""
     if "numba.np.arraymath" in sys.modules:
         return
     from numba.np import linalg
@@ -154,11 +115,7 @@ def _skip_blas_lookup() -> None:
 
 
 def _load_without_compiler(dispatcher: Any) -> None:
-    """Make a dispatcher load from numba's cache without setting up the compiler: machine code does not need it.
-
-    Code that cannot be loaded is compiled anew, and so is code that cannot be kept, in the next process. The dispatcher
-    is changed in place; nothing happens with versions of numba that lack the methods used here.
-    """
+    """Make a dispatcher load from numba's cache without setting up the compiler: machine code does not need it."""
     store = dispatcher._cache
     if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
         return
@@ -181,10 +138,8 @@ def _load_without_compiler(dispatcher: Any) -> None:
 
 
 def _widen_integers(dispatcher: Any) -> None:
-    """Make a dispatcher, in place, compile one copy for all whole numbers, as int64.
-
-    Else each constant and each width would get a copy of its own.
-    """
+    """Make a dispatcher, in place, compile one copy for all whole numbers, as int64."""
+    # Else each constant and each width would get a copy of its own.
     from numba.core import types
 
     compile_exactly = dispatcher.compile
@@ -196,17 +151,7 @@ def _widen_integers(dispatcher: Any) -> None:
 
 
 def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> None:
-    """Make a dispatcher, in place, link to other kernels before it compiles, and count and report what it compiles.
-
-    When compiling takes longer than a second, a notice is printed on the standard error stream. None of this happens
-    when the code comes from the cache.
-
-    Parameters
-    ----------
-    dispatcher : numba's dispatcher of a kernel.
-    module_globals : the names of the module that defines the kernel, with their values; kernels among them are
-        replaced by their dispatchers.
-    """
+    """Make a dispatcher, in place, link to other kernels before it compiles, and count and report what it compiles."""
     compiler = dispatcher._compiler
     compile_now = compiler.compile
 
@@ -225,37 +170,20 @@ def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> Non
 
 
 def _link(module_globals: dict[str, Any]) -> None:
-    """Replace kernels among a module's globals, `module_globals` (name to value), by their dispatchers, in place.
-
-    Numba resolves no other objects there.
-    """
+    """Replace kernels among a module's globals, `module_globals` (name to value), by their dispatchers, in place."""
     for name, value in list(module_globals.items()):
         if isinstance(value, Kernel):
             module_globals[name] = value.dispatcher()
 
 
 def _compile(dispatcher: Any, args: tuple[Any, ...]) -> None:
-    """Compile for the types of these arguments, without running; do nothing when given a plain function.
-
-    `dispatcher` : numba's dispatcher of a kernel, or that function. `args` : arguments as for a call; only types are
-        read.
-    """
+    """Compile for the types of these arguments, without running; do nothing when given a plain function."""
     if hasattr(dispatcher, "typeof_pyval"):
         dispatcher.compile(tuple(dispatcher.typeof_pyval(value) for value in args))
 
 
 class CompilingProgress:
-    """The kernels that this process has compiled, reported on a terminal (standard error) every few seconds.
-
-    Attributes
-    ----------
-    dispatchers : numba's dispatchers of all kernels called so far, in the order of their first calls.
-    has_cache : whether there is a directory to keep compiled kernels in.
-    compiled_count : how many times this process has compiled a kernel, not counting those read from the cache.
-    started_at : time.monotonic(), in seconds, when reports began; None before, and nothing is reported then.
-    notice_delay : seconds of compiling one kernel after which the user is informed.
-    interval : seconds between two lines of progress.
-    """
+    """The kernels that this process has compiled, reported on a terminal (standard error) every few seconds."""
 
     __slots__ = (
         "_reported_at",
@@ -276,10 +204,7 @@ class CompilingProgress:
         self.notice_delay, self.interval = NOTICE_DELAY, PROGRESS_INTERVAL
 
     def step(self) -> None:
-        """Count one more compiled kernel; report progress when reports have begun and it is time for one.
-
-        Nothing is printed unless standard error is a terminal.
-        """
+        """Count one more compiled kernel; report progress when reports have begun and it is time for one."""
         self.compiled_count += 1
         now = time.monotonic()
         if (
@@ -304,11 +229,7 @@ PROGRESS = CompilingProgress()
 
 
 def kernel_status() -> tuple[int, bool]:
-    """Return how many kernels this process has ready, compiled or read from disk, and whether there is a cache on disk.
-
-    The second value is True when compiled kernels are kept for the next process, False when no directory can be
-    written.
-    """
+    """Return how many kernels this process has ready, compiled or read from disk, and whether there is a cache."""
     return sum(bool(dispatcher.overloads) for dispatcher in PROGRESS.dispatchers), PROGRESS.has_cache
 
 

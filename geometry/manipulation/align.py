@@ -25,18 +25,9 @@ MAX_ALIGNMENTS = 4  # first legs for which the rest is planned; convention, for 
 
 
 def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS) -> list[Leg] | None:
-    """Return legs of which the first aligns the body and the others go by whole squares; None when none are found.
-
-    An aligned body has its longest side along an axis and its first corner on whole squares. Of the plans found the one
-    with the fewest commands is returned. A leg holds all from grasp to release: the robot's place (x, y) for the grasp,
-    then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in squares, table frame. Of plans with as
-    many commands the one found first is returned.
-
-    Parameters
-    ----------
-    query : the body, the robot, the goal, and what is in the way.
-    max_alignments : the number of first legs for which the rest is planned.
-    """
+    """Return legs of which the first aligns the body and the others go by whole squares; None when none are found."""
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame.
     if _is_aligned(query.shape):
         return None
     best: list[Leg] | None = None
@@ -56,13 +47,9 @@ def _is_aligned(shape: Any) -> bool:
 
 
 def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
-    """Yield the legs that align the body, at most one for each grasp, those with short walks first.
-
-    A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    (degrees, about the robot) in order, in squares, table frame. For a grasp the smaller of two turns is taken when it
-    is free, else the other; nothing is yielded for it when neither is. `query` : the body, the robot, and what is in
-    the way.
-    """
+    """Yield the legs that align the body, at most one for each grasp, those with short walks first."""
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame.
     tilt = longest_edge_tilt(query.shape)
     for candidate in grasp_candidates(query):
         relative = query.grasp_offset(candidate.place)
@@ -77,18 +64,7 @@ def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
 
 
 def _aligning_motions(query: ManipulationQuery, utak: XY, degrees: float) -> tuple[Motion, ...]:
-    """Return the turn by `degrees` and the push that align the body; () when not free or nothing is to be done.
-
-    Parameters
-    ----------
-    query : the body as it lies, and what is in the way.
-    utak : (x, y) of the robot when it holds the body, squares, table frame; the turn is about it.
-    degrees : counter-clockwise positive; below MIN_ALIGNMENT, or nearly 90, there is no turn.
-
-    Returns
-    -------
-    Translate and Rotate in order, table frame, at most one of each; the turn comes first.
-    """
+    """Return the turn by `degrees` and the push that align the body; () when not free or nothing is to be done."""
     motions: list[Motion] = []
     shape = query.shape
     if MIN_ALIGNMENT < abs(degrees) < 90.0 - MIN_ALIGNMENT:

@@ -20,26 +20,7 @@ Step = tuple[int, int, int, int]  # grasp, quarter turn, direction, cell
 
 
 class LegExtraction:
-    """The translation of a search's nodes into legs.
-
-    A node of the search is a number that stands for a step: (index of the grasp in `body.holds`, quarter turn of the
-    body 0..3, direction being pushed in 0..7 or 8 for none, number of the square of the body's centroid in `grid`).
-
-    Parameters
-    ----------
-    query : the query that was searched.
-    before_nudge : the query before the robot, holding the shape, was assumed to have pushed it so that the robot stands
-        at the centre of a square; else the same query.
-    body, grid : footprints of the shape, and the numbering of squares of the state lattice.
-    ends : (4, squares) int32, the cost of ending at each pose by quarter turn and number of square; -1 off the goal.
-
-    Attributes
-    ----------
-    query, before_nudge, body, grid, ends : the same.
-    holds : by quarter turn, (n, 2) columns and rows from the square of the body's centroid to the robot's square.
-    shape : shapely Polygon, table frame: the body as it lies after the legs made so far.
-    at : (column, row) of the robot's square after them.
-    """
+    """The translation of a search's nodes into legs."""
 
     def __init__(
         self, query: ManipulationQuery, before_nudge: ManipulationQuery, body: Footprints, grid: Grid, ends: Costs
@@ -51,40 +32,24 @@ class LegExtraction:
         self.at = query.square
 
     def legs(self, nodes: Longs) -> list[Leg]:
-        """Return the legs, one for each group of successive nodes with the same grasp, in order; [] without nodes.
-
-        A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
-        Rotate (degrees, about the robot) in order, in squares, table frame.
-
-        `nodes` : (n,) int64, in order, as find_carrying_path returns them. To be called once: the shape moves along.
-        """
+        """Return the legs, one for each group of successive nodes with the same grasp, in order; [] without nodes."""
+        # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
+        # Rotate (degrees, about the robot) in order, in squares, table frame.
         count = (self.grid.rows + 2 * self.grid.pad) * self.grid.stride
         steps = [(n // count // 36, n // count // 9 % 4, n // count % 9, n % count) for n in nodes.tolist()]
         groups = [list(group) for _, group in groupby(steps, key=lambda step: step[0])]
         return [self._leg(group, group is groups[0], group is groups[-1]) for group in groups]
 
     def _robot_place(self, step: Step) -> XY:
-        """Return the centre of the robot's square at a step, (x, y) in squares, table frame.
-
-        `step` : (index of the grasp, quarter turn, direction, number of the square of the body's centroid).
-        """
+        """Return the centre of the robot's square at a step, (x, y) in squares, table frame."""
         x, y = self.holds[step[1]][step[0]].tolist()
         column, row = self.grid.square(step[3])
         return column + x + 0.5, row + y + 0.5
 
     def _leg(self, group: list[Step], first: bool, last: bool) -> Leg:
-        """Return the leg of a group of steps with the same grasp, and move the shape and the robot along.
-
-        A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
-        Rotate (degrees, about the robot) in order, in squares, table frame. Its `hold`, the offset of the grasp from
-        the body's centroid, is in the frame of the body as the query has it; its `taken` says whether it goes on with
-        the grasp that the robot has.
-
-        Parameters
-        ----------
-        group : successive steps, at least one.
-        first, last : whether it is the first, the last group of the path.
-        """
+        """Return the leg of a group of steps with the same grasp, and move the shape and the robot along."""
+        # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
+        # Rotate (degrees, about the robot) in order, in squares, table frame.
         middle = place = self._robot_place(group[0])
         taken = self.query.held and first and self._square(group[0]) == self.query.square
         walk = 0 if taken else abs(math.floor(place[0]) - self.at[0]) + abs(math.floor(place[1]) - self.at[1])
@@ -107,24 +72,12 @@ class LegExtraction:
         return Leg(place, square or (0, 0), with_pivots_at_robot(place, motions), hold, walk, taken)
 
     def _square(self, step: Step) -> tuple[int, int]:
-        """Return (column, row) of the robot's square at a step, in the table.
-
-        `step` : (index of the grasp, quarter turn, direction, number of the square of the body's centroid).
-        """
+        """Return (column, row) of the robot's square at a step, in the table."""
         x, y = self._robot_place(step)
         return math.floor(x), math.floor(y)
 
     def _turn(self, quarters: int, utak: XY) -> Motion:
-        """Return the turn of the shape by quarters about the robot, and turn the shape.
-
-        A Rotate, degrees counter-clockwise positive, table frame. The first way that is free with the margin is taken,
-        then the first that is free without; the first way when none is.
-
-        Parameters
-        ----------
-        quarters : 1 counter-clockwise, 2 half a turn (the way that has more room), 3 clockwise by one.
-        utak : (x, y) of the robot, squares, table frame.
-        """
+        """Return the turn of the shape by quarters about the robot, and turn the shape."""
         ways = [90.0] if quarters == 1 else [-90.0] if quarters == 3 else [180.0, -180.0]
         turns = [Rotate(degrees, utak) for degrees in ways]
         with_margin = padded_shape(self.shape, self.query.margin)
@@ -137,18 +90,7 @@ class LegExtraction:
         return turns[0]
 
     def _pushes(self, before: list[XY], steps: list[Step], last: bool) -> list[Motion]:
-        """Return the pushes along the steps of one quarter turn, as few as possible, and move the shape along.
-
-        Parameters
-        ----------
-        before : the robot's place (x, y) before it comes to the first step, if it is another one; else [].
-        steps : successive steps with the same grasp and quarter turn.
-        last : whether these are the last pushes, which go straight to the goal.
-
-        Returns
-        -------
-        list of Translate, in order; [] when there is nothing to push.
-        """
+        """Return the pushes along the steps of one quarter turn, as few as possible, and move the shape along."""
         stops, corners = self._stops(before, steps)
         goal = self.query.goal
         if last and isinstance(goal, At):
@@ -166,12 +108,9 @@ class LegExtraction:
         return motions
 
     def _ends(self, step: Step) -> Floats:
-        """Return places of the robot at which the shape, held and turned as in a step, lies well at the goal (cost 0).
-
-        (n, 2) float64 x, y in squares, table frame, in order of the numbers of squares; every k-th when there are more
-        than MAX_END_SAMPLES; (0, 2) when there is none. `step` : (index of the grasp, quarter turn, direction, number
-        of the centroid's square); only the first two are read.
-        """
+        """Return places of the robot at which the shape, held and turned as in a step, suits the goal (cost 0)."""
+        # (n, 2) float64 x, y in squares, table frame, in order of the numbers of squares; every k-th when there are
+        # more than MAX_END_SAMPLES;
         hold, quarters, _, _ = step
         places = np.flatnonzero(self.ends[quarters] == 0)
         row, column = np.divmod(places[:: math.ceil(len(places) / MAX_END_SAMPLES) or 1], self.grid.stride)
@@ -179,16 +118,7 @@ class LegExtraction:
         return ends
 
     def _stops(self, before: list[XY], steps: list[Step]) -> tuple[Floats, Longs]:
-        """Return the robot's places on the path, and the indices of those where it turns, ends included.
-
-        (n, 2) float64 x, y in squares, table frame, in the order of the path, and (k,) int64, ascending: [0] for a
-        single place.
-
-        Parameters
-        ----------
-        before : the robot's place (x, y) before it comes to the first step, if it is another one; else [].
-        steps : successive steps with the same grasp and quarter turn, at least one.
-        """
+        """Return the robot's places on the path, and the indices of those where it turns, ends included."""
         stops = [*before, self._robot_place(steps[0])]
         corners, direction = [0], 8
         for here, following in pairwise(steps):

@@ -15,15 +15,7 @@ MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a
 
 
 def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
-    """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too.
-
-    It is remembered with the workspace: wherever the robot stands, and whatever it holds, the answer is the same.
-
-    `query` : the body, the goal and the floor; the robot is not looked at. The plan holds the motions (Translate,
-        Rotate) in order, squares and degrees, table frame, and when impossible the passage that is too narrow. Its
-        poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "found",
-        "impossible", or "limit" (undecided, or the goal is of another kind than At, InCorner, Between and Inside).
-    """
+    """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too."""
     return query.workspace.once(("alone", query.shape.wkb, goal_key(query.goal)), partial(_plan_alone, query))
 
 
@@ -46,11 +38,7 @@ def _plan_alone(query: ManipulationQuery) -> MotionPlan:
 
 
 def _corner_region(goal: InCorner, query: ManipulationQuery) -> Any:
-    """Return the floor near a corner in which a body must lie to be in the corner: shapely MultiPolygon, table frame.
-
-    `goal` : the corner, with the greatest gap to each wall (`slack`). `query` : the body and the floor. Squares. A body
-        that cannot be brought there cannot be in the corner. Empty if no floor comes near both walls.
-    """
+    """Return the floor near a corner in which a body must lie to be in the corner: shapely MultiPolygon."""
     reach = 2.0 * shapely.minimum_bounding_radius(query.shape) + goal.slack
 
     def corner_box(across: float, up: float) -> Any:
@@ -66,11 +54,8 @@ def _corner_region(goal: InCorner, query: ManipulationQuery) -> Any:
 
 
 def _region_between_walls(goal: Between, query: ManipulationQuery) -> Any:
-    """Return the floor near two walls in which a body must lie to be within the slack of both.
-
-    shapely MultiPolygon, squares, table frame. `query` : the body and the floor. `goal.slack` is the greatest gap to
-    each wall. Empty without such floor.
-    """
+    """Return the floor near two walls in which a body must lie to be within the slack of both."""
+    # Empty without such floor.
     reach = 2.0 * shapely.minimum_bounding_radius(query.shape) + goal.slack
     parts = shapely.get_parts(query.workspace.floor_polygon.intersection(goal.about(reach)))
     return shapely.MultiPolygon([p for p in parts if p.area > 0.0 and max(goal.gaps(p)) <= goal.slack])

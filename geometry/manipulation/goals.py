@@ -27,55 +27,35 @@ TIGHT_END_COST = 2 * COMMAND_COST // 5  # of an end that only just meets the goa
 
 @dataclass(frozen=True)
 class At:
-    """A goal: the shape turned about its own centroid by pose.degrees, then moved by (pose.x, pose.y) squares.
+    """A goal: the shape turned about its own centroid by pose.degrees, then moved by (pose.x, pose.y) squares."""
 
-    Attributes
-    ----------
-    pose : relative to the shape as it lies when the goal is set; degrees counter-clockwise positive, x east, y north.
-    """
-
+    # Relative to the shape as it lies when the goal is set; degrees counter-clockwise positive, x east, y north
     pose: Pose
 
 
 @dataclass(frozen=True)
 class InCorner:
-    """A goal: the shape's bounding box within `slack` squares of both walls of a corner, at any angle of the shape.
+    """A goal: the shape's bounding box within `slack` squares of both walls of a corner, at any angle of the shape."""
 
-    Attributes
-    ----------
-    x, y : the corner, where the walls meet, in squares, table frame. The walls run along the axes.
-    sx, sy : 1 for an eastern or northern corner, else -1.
-    slack : the greatest gap to each wall, in squares.
-    within : how far from the two walls the box may reach at most (its far sides), in squares, the lesser and the
-        greater; a shape that is not aligned with the walls reaches further.
-    press : squares beyond `slack` from the walls at which a body may end on the lattice, to be pressed on from there.
-    """
-
-    x: float
+    x: float  # the corner, where the walls meet, in squares, table frame. The walls run along the axes.
     y: float
-    sx: int
+    sx: int  # 1 for an eastern or northern corner, else -1
     sy: int
-    slack: float = 1.0
+    slack: float = 1.0  # the greatest gap to each wall, in squares
+    # How far from the two walls the box may reach at most (its far sides), in squares, the lesser and the greater; a
+    # shape that is not aligned with the walls reaches further
     within: tuple[float, float] = (math.inf, math.inf)
+    # Squares beyond `slack` from the walls at which a body may end on the lattice, to be pressed on from there
     press: float = 0.0
 
     def gaps(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> tuple[Extent, Extent]:
-        """Return the gaps between bounding boxes and the two walls, in squares; negative beyond a wall.
-
-        `bounds` : x0, y0, x1, y1 of one box, or four arrays for many, squares, table frame. First the gap along x, to
-            the eastern or western wall, then the gap along y; numbers, or arrays of the same shape.
-        """
+        """Return the gaps between bounding boxes and the two walls, in squares; negative beyond a wall."""
         x = self.x - bounds[2] if self.sx > 0 else bounds[0] - self.x
         y = self.y - bounds[3] if self.sy > 0 else bounds[1] - self.y
         return x, y
 
     def admits(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> Any:
-        """Return whether bounding boxes lie in the corner: a bool, or an array of bool.
-
-        Gaps must be from 0 to `slack`, and the box must reach no further from the walls than `within`, to
-        GOAL_TOLERANCE. `bounds` : x0, y0, x1, y1 of one box, or four arrays for many, squares, table frame. `press`
-        does not count.
-        """
+        """Return whether bounding boxes lie in the corner: a bool, or an array of bool."""
         x, y = self.gaps(bounds)
         across, up = x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]
         near, far = np.minimum(across, up), np.maximum(across, up)
@@ -85,46 +65,27 @@ class InCorner:
 
 @dataclass(frozen=True)
 class Between:
-    """A goal: the shape within `slack` squares of two straight walls that meet in a corner at any angle.
+    """A goal: the shape within `slack` squares of two straight walls that meet in a corner at any angle."""
 
-    The shape may lie beyond the walls: their exact place shows only when they stop it.
-
-    Attributes
-    ----------
-    x, y : the corner, in squares, table frame.
-    walls : the unit normals (x, y) of its two walls, outward: from the floor into the wall.
-    slack : the greatest gap to each wall, in squares.
-    """
-
-    x: float
+    x: float  # the corner, in squares, table frame
     y: float
+    # The unit normals (x, y) of its two walls, outward: from the floor into the wall
     walls: tuple[tuple[float, float], tuple[float, float]]
-    slack: float = 1.0
+    slack: float = 1.0  # the greatest gap to each wall, in squares
 
     def gaps(self, shape: Any) -> tuple[float, float]:
-        """Return the gaps between a shape and the two walls, in squares, in the order of `walls`; negative beyond them.
-
-        Each is measured across the wall, to the nearest point of the shape.
-
-        `shape` : shapely geometry, not empty, squares, table frame.
-        """
+        """Return the gaps between a shape and the two walls in the order of `walls`; negative beyond them."""
         points = shapely.get_coordinates(shape)
         one, two = (float(np.dot(n, (self.x, self.y)) - (points @ np.array(n)).max()) for n in self.walls)
         return one, two
 
     def move(self, gaps: tuple[float, float]) -> tuple[float, float]:
-        """Return the translation (dx, dy) in squares, table frame, that reduces the gaps to the walls by these amounts.
-
-        `gaps` : squares, in the order of `walls`; negative amounts widen a gap.
-        """
+        """Return the translation (dx, dy) in squares, that reduces the gaps to the walls by these amounts."""
         dx, dy = np.linalg.solve(np.array(self.walls), np.array(gaps)).tolist()
         return dx, dy
 
     def about(self, reach: float) -> Any:
-        """Return the area at most `reach` squares from both walls, and at most so far beyond them.
-
-        shapely Polygon, a parallelogram about the corner, table frame.
-        """
+        """Return the area at most `reach` squares from both walls, and at most so far beyond them."""
         ends = [
             self.move((-far, -wide))
             for far, wide in ((-reach, -reach), (-reach, reach), (reach, reach), (reach, -reach))
@@ -134,14 +95,10 @@ class Between:
 
 @dataclass(frozen=True)
 class Roomy:
-    """A goal on the way to others: two free squares all round, so that the robot can grasp the shape from any side.
+    """A goal on the way to others: two free squares all round, so that the robot can grasp the shape from any side."""
 
-    Attributes
-    ----------
-    near : (x, y) in squares, table frame, the wished place of the shape's centroid: the nearer, the cheaper; None for
-        anywhere.
-    """
-
+    # (x, y) in squares, table frame, the wished place of the shape's centroid: the nearer, the cheaper; None for
+    # anywhere
     near: tuple[float, float] | None = None
 
 
@@ -154,14 +111,7 @@ def goal_key(goal: End) -> Hashable:
 
 
 def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
-    """Return whether a shape meets the goal as it lies now, to GOAL_TOLERANCE squares.
-
-    Parameters
-    ----------
-    goal : any goal; a `Roomy` goal is never reached for certain, so the answer is False.
-    shape : shapely Polygon, table frame: the shape as it was when the goal was set. Only an `At` goal depends on it.
-    now : the same shape as it lies now.
-    """
+    """Return whether a shape meets the goal as it lies now, to GOAL_TOLERANCE squares."""
     if isinstance(goal, Inside):
         return any(part.buffer(GOAL_TOLERANCE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
@@ -174,22 +124,13 @@ def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
 
 
 def shape_at_pose(shape: Any, pose: Pose) -> Any:
-    """Return a shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y) squares.
-
-    Counter-clockwise, x to the east, y to the north. `shape` : shapely Polygon, squares, table frame, as the result, a
-    new one.
-    """
+    """Return a shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y) squares."""
     middle = np.array([shape.centroid.x, shape.centroid.y])
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
 
 
 def moved(goal: End, dx: float, dy: float) -> End:
-    """Return a goal translated by (dx, dy) squares, table frame, for a shape that is translated as far.
-
-    A new goal of the same class: regions, corners and wished places are translated; gaps and normals stay.
-
-    An `At` goal is relative to the shape and stays the same, as does a `Roomy` goal anywhere.
-    """
+    """Return a goal translated by (dx, dy) squares, table frame, for a shape that is translated as far."""
     if isinstance(goal, Inside):
         return Inside(shapely.transform(goal.polygon, lambda p: p + np.array([dx, dy])))
     if isinstance(goal, InCorner | Between):
@@ -200,23 +141,10 @@ def moved(goal: End, dx: float, dy: float) -> End:
 
 
 def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLattice, grid: Grid) -> Costs:
-    """Return the cost of ending at each pose of the lattice; -1 where the goal is not reached or the body cannot lie.
-
-    For a goal pose off the lattice, the places beside it count when it is a whole number of quarter turns away; their
-    costs are -1 otherwise.
-
-    Parameters
-    ----------
-    goal : what is to be reached.
-    shape : shapely Polygon, the shape as it lies, table frame.
-    footprints, lattice, grid : the state lattice on which is searched.
-
-    Returns
-    -------
-    (4, squares) int32, by quarter turn of the body (counter-clockwise from how it lies) and number of the square of its
-    centroid in `grid`. Costs are those of the lattice, 500 (COMMAND_COST) for a command; 0 for a good end. For a goal
-    pose the body may also be where it cannot lie.
-    """
+    """Return the cost of ending at each pose of the lattice."""
+    # -1 where the goal is not reached or the body cannot lie.
+    # For a goal pose off the lattice, the places beside it count when it is a whole number of quarter turns away; their
+    # costs are -1 otherwise.
     if isinstance(goal, At):
         return _costs_at_pose(goal.pose, shape, footprints, grid)
     if isinstance(goal, Inside):
@@ -235,17 +163,7 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
 
 
 def _costs_inside(parts: Sequence[Bools], offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
-    """Return the costs of one quarter turn: higher where the body has less than a free square about it.
-
-    (squares,) int32 by number in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares
-    outside the region count as blocked unless they are free.
-
-    Parameters
-    ----------
-    parts : for each part of the region, (squares,) bool, which squares do not lie within it.
-    offsets : (n, 2) columns and rows from the square of the centroid to those that the body covers.
-    lattice, grid : the state lattice, of which the solid squares are read, and its numbering.
-    """
+    """Return the costs of one quarter turn: higher where the body has less than a free square about it."""
     cost = np.full(len(lattice.solid), -1, np.int32)
     grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
     for outside in parts:
@@ -259,13 +177,7 @@ def _costs_inside(parts: Sequence[Bools], offsets: npt.NDArray[np.int64], lattic
 
 
 def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
-    """Return the costs of one quarter turn where all squares within two of the body's are free; -1 elsewhere.
-
-    `goal` : the wished place. `lattice` : the state lattice, of which the solid squares are read. (squares,) int32 by
-        number in `grid`: a tenth of a command for each square from the wished place, 0 without one; -1 also further
-        than ROOMY_RADIUS from it. `offsets` : (n, 2) columns and rows from the square of the centroid to those that the
-        body covers.
-    """
+    """Return the costs of one quarter turn where all squares within two of the body's are free; -1 elsewhere."""
     reach = range(-2, 3)
     grown = np.unique(np.vstack([offsets + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
     roomy = grid.clear(lattice.solid, grid.offsets(grown))
@@ -277,12 +189,7 @@ def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLatt
 
 
 def _costs_in_corner(goal: InCorner, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
-    """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed.
-
-    `goal` : the corner and its walls. `footprints` : the body's squares, of which `home`, that of its centroid, is
-        read. (squares,) int32 by number in `grid`, the numbering of squares: 0, TIGHT_END_COST, or -1 where the body is
-        not in the corner, not even with goal.press squares more. `shape` : shapely Polygon as it lies, table frame.
-    """
+    """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed."""
     x0, y0, x1, y1 = shape_in_pose(shape, footprints, k, footprints.home).bounds
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
     dx, dy = column - grid.pad - footprints.home[0], row - grid.pad - footprints.home[1]
@@ -294,12 +201,7 @@ def _costs_in_corner(goal: InCorner, shape: Any, footprints: Footprints, k: int,
 
 
 def _costs_between(goal: Between, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
-    """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed.
-
-    `goal` : the corner and its walls. `footprints` : the body's squares, of which `home`, that of its centroid, is
-        read. (squares,) int32 by number in `grid`, the numbering of squares: 0, TIGHT_END_COST, or -1 where the gap is
-        more than goal.slack. `shape` : shapely Polygon as it lies, table frame.
-    """
+    """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed."""
     gaps = goal.gaps(shape_in_pose(shape, footprints, k, footprints.home))
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
     dx, dy = column - grid.pad - footprints.home[0], row - grid.pad - footprints.home[1]
@@ -310,28 +212,14 @@ def _costs_between(goal: Between, shape: Any, footprints: Footprints, k: int, gr
 
 
 def shape_in_pose(shape: Any, footprints: Footprints, k: int, place: tuple[int, int]) -> Any:
-    """Return the shape in a pose of the lattice: k quarter turns about the centre of its home square, then moved.
-
-    Parameters
-    ----------
-    shape : shapely Polygon as it lies, squares, table frame, as the result.
-    footprints : its squares; `home` is the square of its centroid as it lies.
-    k : quarter turns, counter-clockwise.
-    place : (column, row) to which the home square goes.
-    """
+    """Return the shape in a pose of the lattice: k quarter turns about the centre of its home square, then moved."""
     home = np.array(footprints.home) + 0.5
     move = np.array(place) + 0.5
     return shapely.transform(shape, lambda p: turned(p - home, 90.0 * k) + move)
 
 
 def _costs_at_pose(pose: Pose, shape: Any, footprints: Footprints, grid: Grid) -> Costs:
-    """Return the costs of the pose's own place on the lattice, or of the up to four places about it; -1 elsewhere.
-
-    `pose` : relative to the shape as it lies, squares and degrees. `footprints` : the body's squares, of which `home`
-        is read. (4, squares) int32 by quarter turn and number in `grid`: 100 for each square that a place is off the
-        pose. All -1 when the pose is no whole number of quarter turns. `shape` : shapely Polygon as it lies, table
-        frame.
-    """
+    """Return the costs of the pose's own place on the lattice, or of the up to four places about it; -1 elsewhere."""
     found = np.full((4, (grid.rows + 2 * grid.pad) * grid.stride), -1, np.int32)
     k = round(pose.degrees / 90.0)
     if abs(pose.degrees - 90.0 * k) > 1e-7:

@@ -18,28 +18,15 @@ MAX_TRACK_SAMPLES = 60  # poses of a track that are looked at; convention, for t
 
 @dataclass(frozen=True)
 class GraspCandidate:
-    """A place from which the robot can grasp the body where it lies.
+    """A place from which the robot can grasp the body where it lies."""
 
-    Attributes
-    ----------
-    place : (x, y) in squares, table frame, the centre of a square, or the robot's own place.
-    walk : squares to walk to it, rounded down.
-    taken : whether the robot is there and holds the body already.
-    """
-
-    place: XY
-    walk: int
-    taken: bool = False
+    place: XY  # (x, y) in squares, table frame, the centre of a square, or the robot's own place
+    walk: int  # squares to walk to it, rounded down
+    taken: bool = False  # whether the robot is there and holds the body already
 
 
 def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
-    """Return the present grasp if there is one, then those that the robot can walk to, nearest first.
-
-    A candidate holds the robot's place (x, y) in squares, table frame, the squares to walk to it (rounded down) and
-    whether the robot holds the body there already. `query` : the body, the robot, and where it may walk. Of places as
-    near the one with the least x, then y, comes first. Each other candidate is the centre of a free square that shares
-    a side or a corner with one that the body covers. Grasps that must be avoided are left out. [] when there is none.
-    """
+    """Return the present grasp if there is one, then those that the robot can walk to, nearest first."""
     shape, utak = query.shape, query.utak
     rows, columns = query.walk.shape
     covered = squares(shape, columns, rows)
@@ -62,19 +49,10 @@ def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
 
 
 def grasp_rank(query: ManipulationQuery, candidate: GraspCandidate, track: Floats) -> tuple[bool, int, float, int, XY]:
-    """Return a sort key for grasps: the most promising has the least. Keys are compared part by part.
-
-    Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall, in
-    MAX_TRACK_SAMPLES poses; the distance from the robot's place at the grasp to the body's furthest corner, in squares;
-    the squares to walk; that place, (x, y) in squares, table frame.
-
-    Parameters
-    ----------
-    query : the body, the robot, and what is in the way.
-    candidate : the grasp.
-    track : (n, 3) float64, a path of the body alone: x, y in squares, table frame, and angle in radians of some point
-        of it; may be empty.
-    """
+    """Return a sort key for grasps: the most promising has the least. Keys are compared part by part."""
+    # Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall, in
+    # MAX_TRACK_SAMPLES poses; the distance from the robot's place at the grasp to the body's furthest corner, in
+    # squares; the squares to walk; that place, (x, y) in squares, table frame.
     in_walls = 0
     if len(track):
         way = resample_evenly(track, 1.0, MAX_TRACK_SAMPLES)

@@ -41,25 +41,16 @@ MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, f
 
 
 class _BodyKey(NamedTuple):
-    """All that the footprints of a body depend on, wherever it lies.
+    """All that the footprints of a body depend on, wherever it lies."""
 
-    Attributes
-    ----------
-    wkb : well-known binary of its outline, a shapely Polygon, moved so that the square of the centroid is (0, 0).
-    margin : squares of clearance that it should keep.
-    own : (column, row) of the robot relative to that square when it holds the body, else None.
-    """
-
+    # Well-known binary of its outline, a shapely Polygon, moved so that the square of the centroid is (0, 0)
     wkb: bytes
-    margin: float
-    own: tuple[int, int] | None
+    margin: float  # squares of clearance that it should keep
+    own: tuple[int, int] | None  # (column, row) of the robot relative to that square when it holds the body, else None
 
 
 def _key_of(query: ManipulationQuery) -> tuple[_BodyKey, tuple[int, int]]:
-    """Return what the footprints of the body depend on, and the square (column, row) of its centroid in the table.
-
-    `query` : the body, its margin, and the robot when it holds the body.
-    """
+    """Return what the footprints of the body depend on, and the square (column, row) of its centroid in the table."""
     home = math.floor(query.middle[0]), math.floor(query.middle[1])
     shape_near = shapely.transform(query.shape, lambda p: np.round(p - np.array(home), PLACE_DIGITS))
     own = (query.square[0] - home[0], query.square[1] - home[1]) if query.held else None
@@ -68,14 +59,7 @@ def _key_of(query: ManipulationQuery) -> tuple[_BodyKey, tuple[int, int]]:
 
 @lru_cache(maxsize=MAX_KEPT_BODIES)
 def _footprints_near(key: _BodyKey) -> tuple[Footprints, Footprints]:
-    """Return the footprints of a shape whose centroid lies in the square (0, 0), without and with its margin.
-
-    They hold (columns, rows) offsets from that square: squares covered, squares from which to grasp, squares met by a
-    push in each direction and by a turn about each grasp. Both have the same grasps; without a margin both are the same
-    object.
-
-    `key` : the outline, the margin, and the robot when it holds the body.
-    """
+    """Return the footprints of a shape whose centroid lies in the square (0, 0), without and with its margin."""
     shape = shapely.from_wkb(key.wkb)
     body = new_footprints(shape, key.own)
     wide = new_footprints(padded_shape(shape, key.margin), holds=body.holds) if key.margin > 0.0 else body
@@ -90,18 +74,10 @@ def _body_on_table(key: _BodyKey, columns: int, rows: int) -> LatticeBody:
 
 
 def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
-    """Return the cheapest legs by whole squares, or a quick solution where that takes long; None when none are found.
-
-    A robot that holds the shape off the centre of a square pushes it by whole squares all the same, as long as it does
-    not turn it. Or it comes to the centre with its first push, or with one push more, where that takes fewer commands.
-    Both are cheaper than to release and grasp again. The legs are in the order of execution; they are not verified. A
-    leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    (degrees, about the robot) in order, in squares, table frame.
-
-    Parameters
-    ----------
-    query : the body, the robot, the goal, and what is in the way.
-    """
+    """Return the cheapest legs by whole squares, or a quick solution where that takes long."""
+    # None when none are found.
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame.
     if not query.held:
         return _cheapest_legs(query)
     nudges = _nudges(query)
@@ -117,13 +93,9 @@ def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
 
 
 def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
-    """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes; else None.
-
-    They are planned as if the robot stood at the centre, then verified from where it stands. The first leg goes on with
-    the present grasp. A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate
-    (dx, dy) and Rotate (degrees, about the robot) in order, in squares, table frame. `query` : the body, which the
-    robot holds, the goal, and what is in the way.
-    """
+    """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes; else None."""
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame.
     x, y = query.utak
     legs = _cheapest_legs(replace(query, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
     if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
@@ -135,11 +107,7 @@ def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
 
 
 def _nudges(query: ManipulationQuery) -> list[Translate]:
-    """Return the pushes that bring the robot to the centre of a square, shortest first, MAX_NUDGES at most.
-
-    Translate in squares, table frame. There is only one, of length 0, if the robot is at the centre. `query` : only the
-    robot's place is read.
-    """
+    """Return the pushes that bring the robot to the centre of a square, shortest first, MAX_NUDGES at most."""
     x, y = (sorted((math.floor(v - 0.5) + 0.5 - v, math.floor(v - 0.5) + 1.5 - v), key=abs) for v in query.utak)
     x, y = ([0.0] if abs(near) <= CENTRE_TOLERANCE else [near, far] for near, far in (x, y))
     pushes = [Translate(dx, dy) for dx, dy in product(x, y)]
@@ -147,37 +115,23 @@ def _nudges(query: ManipulationQuery) -> list[Translate]:
 
 
 def _may_begin(query: ManipulationQuery, leg: Leg) -> bool:
-    """Return whether the robot, holding the shape, can and may make the first motion of a leg.
-
-    `query` : the body and the robot, and what is in the way. For a leg without motions: whether it may pull.
-    """
+    """Return whether the robot, holding the shape, can and may make the first motion of a leg."""
     motion = leg.motions[0] if leg.motions else Translate(0.0, 0.0)
     pushes = query.pull or only_pushes(query.shape, query.utak, [motion])
     return pushes and query.workspace.lets(query.shape, query.utak, motion)
 
 
 def _leg_cost(query: ManipulationQuery, legs: Sequence[Leg]) -> float:
-    """Return about how many commands legs take, each turn counted as query.turn commands.
-
-    A number of commands, not whole when query.turn is not.
-    """
+    """Return about how many commands legs take, each turn counted as query.turn commands."""
     turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
     return commands(legs) + (query.turn - 1.0) * turns
 
 
 def _cheapest_legs(query: ManipulationQuery, before_nudge: ManipulationQuery | None = None) -> list[Leg] | None:
-    """Return the cheapest legs of a robot that stands at the centre of a square when it holds the shape, or None.
-
-    A push with a bend may become one straight push, or two: both costs are tried, and the fewer commands taken. None
-    when none are found, or the centroid of the shape is off the table. A leg holds all from grasp to release: the
-    robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
-    squares, table frame.
-
-    Parameters
-    ----------
-    query : the body, the robot, the goal, and what is in the way.
-    before_nudge : the query before the robot was pushed to the centre; None when it was not.
-    """
+    """Return the cheapest legs of a robot that stands at the centre of a square when it holds the shape, or None."""
+    # None when none are found, or the centroid of the shape is off the table. A leg holds all from grasp to release:
+    # the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
+    # squares, table frame.
     search = _LatticeSearch(query, before_nudge or query)
     best: list[Leg] | None = None
     for bend_cost in BEND_COSTS if search.on_grid else ():
@@ -191,22 +145,7 @@ def _cheapest_legs(query: ManipulationQuery, before_nudge: ManipulationQuery | N
 
 
 class _LatticeSearch:
-    """A search on the state lattice: what does not depend on the cost of bends is made once.
-
-    Parameters
-    ----------
-    query, before_nudge : the query that is searched, and the one before the robot was pushed to the centre of a square.
-
-    Attributes
-    ----------
-    on_grid : whether the centroid of the shape is in a square of the table. If not, only this, `query`, `before_nudge`
-        and `body` are set.
-    body : the footprints of the shape.
-    grid, lattice : the numbering of squares, and the state lattice.
-    place : number, in `grid`, of the square of the centroid as the shape lies.
-    ends : (4, squares) int32, cost of ending at each pose, -1 off the goal.
-    first_costs : (grasps,) int32, cost of the first grasp at each of `body.holds`; -1 where the robot cannot.
-    """
+    """A search on the state lattice: what does not depend on the cost of bends is made once."""
 
     def __init__(self, query: ManipulationQuery, before_nudge: ManipulationQuery) -> None:
         self.query, self.before_nudge = query, before_nudge
@@ -230,14 +169,9 @@ class _LatticeSearch:
         self.first_costs = _first_grasp_costs(query, self.body, walk)
 
     def legs(self, bend_cost: int) -> list[Leg] | None:
-        """Return the cheapest legs, given the cost of another direction within one push; None when none are found.
-
-        In order. A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy)
-        and Rotate (degrees, about the robot) in order, in squares, table frame. When the first search runs out of
-        nodes, a second one looks for any legs, perhaps of twice the least cost.
-
-        `bend_cost` : in the costs of the lattice, COMMAND_COST for a command.
-        """
+        """Return the cheapest legs, given the cost of another direction within one push; None when none are found."""
+        # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
+        # Rotate (degrees, about the robot) in order, in squares, table frame.
         if not can_reach_end(self.lattice, self.ends, self.place):
             return None
         to_go = cost_to_go(self.lattice, self.ends, bend_cost)
@@ -253,12 +187,8 @@ class _LatticeSearch:
 
 
 def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) -> Costs:
-    """Return the cost of the first grasp at each of body.holds: 0 for the present one; any other needs a release first.
-
-    (grasps,) int32, COMMAND_COST for a command; -1 where no path leads or the grasp must be avoided. `query` : whether
-    and where the robot holds the body. `walk` : the same costs for a robot with empty hands; they are returned
-    themselves when it holds nothing.
-    """
+    """Return the cost of the first grasp at each of body.holds: 0 for the present one."""
+    # Any other needs a release first.
     if not query.held:
         return walk
     first_costs = np.where(walk >= 0, walk + REGRASP_COST, -1).astype(np.int32)
@@ -267,11 +197,7 @@ def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) 
 
 
 def _grasp_costs(query: ManipulationQuery, body: Footprints) -> Costs:
-    """Return the cost of a grasp at each of body.holds, -1 where it must be avoided.
-
-    (grasps,) int32, in the order of body.holds, COMMAND_COST for a command: 0 beside the shape, CORNER_GRASP_COST
-    across a corner of the robot's square. `query` : the grasps to avoid. `body` : the footprints of the shape.
-    """
+    """Return the cost of a grasp at each of body.holds, -1 where it must be avoided."""
     lying = {(int(x), int(y)) for x, y in body.lying}
     grips = []
     for x, y in body.holds.tolist():
@@ -282,12 +208,7 @@ def _grasp_costs(query: ManipulationQuery, body: Footprints) -> Costs:
 
 
 def _allowed_pushes(query: ManipulationQuery, body: Footprints) -> Bools:
-    """Return in which directions the robot may push from each grasp in each quarter turn: (4, grasps, 8) bool.
-
-    The first axis is the quarter turn of the shape, the second the index in body.holds, the third the direction as in
-    PUSH_DIRECTIONS, table frame. All True where the robot may pull; else True for pushes that lead from the robot
-    towards the body's centroid. `query` : the body, and whether the robot may pull. `body` : its footprints.
-    """
+    """Return in which directions the robot may push from each grasp in each quarter turn: (4, grasps, 8) bool."""
     allowed = np.ones((4, len(body.holds), 8), np.bool_)
     if query.pull:
         return allowed

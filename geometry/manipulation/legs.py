@@ -26,50 +26,33 @@ WALK_SQUARES_PER_COMMAND = 12  # squares; estimate, as the cost of walking on th
 
 @dataclass(frozen=True)
 class Leg:
-    """All that the robot does with the body from grasp to release.
+    """All that the robot does with the body from grasp to release."""
 
-    Attributes
-    ----------
-    place : (x, y) in squares, table frame, where the robot stands to grasp the body: the centre of a square, or the
-        robot's own place when it holds the body already.
-    direction_square : (columns, rows) from the robot's own square to the square of the body that it grasps, each -1, 0,
-        1; columns count to the east, rows to the north. It may be (0, 0) when `taken`, for then nothing is grasped.
-    motions : Translate (push) and Rotate (turn about the robot's place at that time), in order, table frame, each free
-        by exact first contact.
-    hold : (x, y) in squares, the offset of the grasp: the robot's place relative to the body's centroid, in the frame
-        of the body as it lay when the plan was asked for. To be given as `avoid` when the grasp fails.
-    walk : squares to walk to get to the place, along rows and columns (an estimate).
-    taken : whether the robot holds the body already: it neither walks nor grasps. Only of the first leg of a plan.
-    """
-
+    # (x, y) in squares, table frame, where the robot stands to grasp the body: the centre of a square, or the robot's
+    # own place when it holds the body already
     place: XY
+    # (columns, rows) from the robot's own square to the square of the body that it grasps, each -1, 0, 1; columns count
+    # to the east, rows to the north. It may be (0, 0) when `taken`, for then nothing is grasped.
     direction_square: tuple[int, int]
+    # Translate (push) and Rotate (turn about the robot's place at that time), in order, table frame, each free by exact
+    # first contact
     motions: tuple[Motion, ...]
+    # (x, y) in squares, the offset of the grasp: the robot's place relative to the body's centroid, in the frame of the
+    # body as it lay when the plan was asked for. To be given as `avoid` when the grasp fails.
     hold: XY = (0.0, 0.0)
-    walk: int = 0
+    walk: int = 0  # squares to walk to get to the place, along rows and columns (an estimate)
+    # Whether the robot holds the body already: it neither walks nor grasps. Only of the first leg of a plan.
     taken: bool = False
 
     @property
     def commands(self) -> int:
-        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release.
-
-        One for each WALK_SQUARES_PER_COMMAND squares of walk begun, one for the grasp (none if taken), each motion and
-        the release.
-        """
+        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release."""
         return math.ceil(self.walk / WALK_SQUARES_PER_COMMAND) + (0 if self.taken else 1) + len(self.motions) + 1
 
 
 def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
-    """Return the step (columns, rows) from the robot's square to the neighbour that the body covers most.
-
-    Each is -1, 0 or 1, columns to the east, rows to the north. Of equally covered squares one that shares an edge comes
-    first. None when the body covers none of the eight neighbours, as `squares` tells it: a sliver will do.
-
-    Parameters
-    ----------
-    shape : shapely Polygon, the body, squares, table frame.
-    place : (x, y) of the robot in squares, table frame.
-    """
+    """Return the step (columns, rows) from the robot's square to the neighbour that the body covers most."""
+    # None when the body covers none of the eight neighbours, as `squares` tells it: a sliver will do.
     column, row = math.floor(place[0]) - 1, math.floor(place[1]) - 1
     near = shapely.transform(shape, lambda p: p - np.array([column, row]))
     covered = covered_areas(near, 3, 3)
@@ -78,10 +61,7 @@ def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
 
 
 def round_motion(motion: Motion) -> Motion:
-    """Return a motion with its numbers rounded to LEG_DECIMALS, as they will be commanded; a pivot is not rounded.
-
-    A new Translate (squares) or Rotate (degrees), table frame, of the same kind as `motion`.
-    """
+    """Return a motion with its numbers rounded to LEG_DECIMALS, as they will be commanded; a pivot is not rounded."""
     if isinstance(motion, Translate):
         return Translate(round(motion.dx, LEG_DECIMALS) + 0.0, round(motion.dy, LEG_DECIMALS) + 0.0)
     return Rotate(round(motion.degrees, LEG_DECIMALS) + 0.0, motion.about)
@@ -93,13 +73,7 @@ def commands(legs: Sequence[Leg]) -> int:
 
 
 def with_pivots_at_robot(place: XY, motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """Return the motions with each turn about the robot's place at that time, exactly; as many, in the same order.
-
-    Parameters
-    ----------
-    place : (x, y) of the robot before the first motion, in squares, table frame.
-    motions : in order; the pivots that they have are not used.
-    """
+    """Return the motions with each turn about the robot's place at that time, exactly; as many, in the same order."""
     pivoted: list[Motion] = []
     for motion in motions:
         if isinstance(motion, Translate):
@@ -111,32 +85,18 @@ def with_pivots_at_robot(place: XY, motions: Sequence[Motion]) -> tuple[Motion, 
 
 
 def shifted(leg: Leg, dx: float, dy: float) -> Leg:
-    """Return a leg with its place and the pivots of its motions translated by (dx, dy) squares; `hold` stays.
-
-    A new Leg, table frame; pushes, degrees, walk and `direction_square` stay, too.
-    """
+    """Return a leg with its place and the pivots of its motions translated by (dx, dy) squares; `hold` stays."""
     place = leg.place[0] + dx, leg.place[1] + dy
     return replace(leg, place=place, motions=with_pivots_at_robot(place, leg.motions))
 
 
 def may_push(shape: Any, utak: XY, dx: float, dy: float) -> bool:
-    """Return whether a push (dx, dy) leads from the robot towards the body.
-
-    It must have a positive component along the line from the robot to the body's centroid. `shape` : shapely Polygon;
-    `utak` : (x, y) of the robot; all in squares, table frame.
-    """
+    """Return whether a push (dx, dy) leads from the robot towards the body."""
     return bool(dx * (shape.centroid.x - utak[0]) + dy * (shape.centroid.y - utak[1]) > 1e-9)
 
 
 def only_pushes(shape: Any, place: XY, motions: Sequence[Motion]) -> bool:
-    """Return whether no motion pulls: every Translate leads from the robot towards the body's centroid.
-
-    Parameters
-    ----------
-    shape, place : the shape (shapely Polygon) and the robot's place (x, y) before the first motion, squares, table
-        frame.
-    motions : in order; turns are about the robot.
-    """
+    """Return whether no motion pulls: every Translate leads from the robot towards the body's centroid."""
     for motion in motions:
         if isinstance(motion, Translate):
             if not may_push(shape, place, motion.dx, motion.dy):
@@ -148,35 +108,17 @@ def only_pushes(shape: Any, place: XY, motions: Sequence[Motion]) -> bool:
 
 @dataclass(frozen=True)
 class PushSegment:
-    """A push in several straight pieces, to be replaced by one with fewer. Squares, table frame.
+    """A push in several straight pieces, to be replaced by one with fewer. Squares, table frame."""
 
-    Attributes
-    ----------
-    shape : shapely Polygon, the body as it lies when the push begins.
-    stops : (n, 2) places of the robot on the known path, x, y in squares; the first is where it stands.
-    corners : indices of the stops at which the path turns, both ends among them, ascending.
-    ends : (m, 2) other places of the robot where the push may end; (0, 2) for none.
-    margin : clearance for the shape, in squares.
-    pull : whether the robot may pull.
-    """
-
-    shape: Any
-    stops: Floats
-    corners: Longs
-    ends: Floats
-    margin: float
-    pull: bool
+    shape: Any  # shapely Polygon, the body as it lies when the push begins
+    stops: Floats  # (n, 2) places of the robot on the known path, x, y in squares; the first is where it stands
+    corners: Longs  # indices of the stops at which the path turns, both ends among them, ascending
+    ends: Floats  # (m, 2) other places of the robot where the push may end; (0, 2) for none
+    margin: float  # clearance for the shape, in squares
+    pull: bool  # whether the robot may pull
 
     def pieces(self, workspace: Workspace) -> Floats:
-        """Return the stops to keep so that the push has the fewest straight pieces, then the least length.
-
-        (k, 2) places of the robot, x, y in squares, table frame, the first of `stops` first. The last is the last of
-        `stops`, or one of `ends` where that takes fewer pieces. Pieces of the known path always count as free.
-
-        Parameters
-        ----------
-        workspace : where the body and the robot may be.
-        """
+        """Return the stops to keep so that the push has the fewest straight pieces, then the least length."""
         if len(self.corners) <= 2:
             return self.stops[self.corners]
         sampled = np.union1d(self.corners, np.arange(0, len(self.stops), math.ceil(len(self.stops) / MAX_STOPS)))
@@ -191,15 +133,8 @@ class PushSegment:
         return self._traced_stops(workspace, stops, best)
 
     def _traced_stops(self, workspace: Workspace, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
-        """Return the stops of the best path to the last one, or to another end where that takes fewer pieces: (k, 2).
-
-        Parameters
-        ----------
-        workspace : where the body and the robot may be.
-        stops : (n, 2) places of the robot, squares, table frame.
-        best : for each stop the number of pieces on the way to it, their length in squares, and the index of the stop
-            before (-1 at the first).
-        """
+        """Return the stops of the best path to the last one, or to another end where that takes fewer pieces."""
+        # (k, 2).
         final, at = (best[-1][0], best[-1][1]), len(stops) - 1
         kept: list[Floats] = []
         for i in range(len(stops) - 1):
@@ -216,12 +151,7 @@ class PushSegment:
         return np.array(kept[::-1])
 
     def _free_pushes(self, workspace: Workspace, here: Floats, there: Floats) -> Bools:
-        """Return to which of the places `there` (n, 2) the robot can push straight from the place `here`: (n,) bool.
-
-        `workspace` : where the body and the robot may be. Places are (x, y) of the robot, squares, table frame. The
-            shape moves along from `stops[0]`; it keeps its margin and the robot its clearance, and it is not pulled
-            where that is forbidden.
-        """
+        """Return to which of the places `there` (n, 2) the robot can push straight from the place `here`: (n,) bool."""
         utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
         vectors = there - here
         free = workspace.far(
@@ -233,16 +163,7 @@ class PushSegment:
 
 
 def verified(workspace: Workspace, shape: Any, legs: Sequence[Leg]) -> Any:
-    """Return the shape after all legs; None when a motion is not free or a grasp reaches nothing.
-
-    A shapely Polygon, table frame; without legs `shape` itself.
-
-    Parameters
-    ----------
-    workspace : where body and robot may be.
-    shape : shapely Polygon, the body as it lies, squares, table frame.
-    legs : the legs to verify by exact first contact, without margins. Walks are not verified.
-    """
+    """Return the shape after all legs; None when a motion is not free or a grasp reaches nothing."""
     for leg in legs:
         at = leg.place
         if not leg.taken and direction_to_grasp(shape, at) is None:

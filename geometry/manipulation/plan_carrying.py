@@ -196,19 +196,14 @@ def plan_carrying(
 
 
 class OffLatticePlanners(NamedTuple):
-    """The planners that are asked, in this order, when whole squares and quarter turns alone lead nowhere.
+    """The planners that are asked, in this order, when whole squares and quarter turns alone lead nowhere."""
 
-    Each returns legs, or None when it finds none.
+    # Each returns legs, or None when it finds none.
 
-    Attributes
-    ----------
-    aligned : first turns the body to the lattice.
-    with_one_grasp : carries the body along a track of the body alone, (n, 3) poses, with one grasp.
-    by_freeing : first brings the body to where there is more room.
-    """
-
-    aligned: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_aligned
+    aligned: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_aligned  # first turns the body to the lattice
+    # Carries the body along a track of the body alone, (n, 3) poses, with one grasp
     with_one_grasp: Callable[[ManipulationQuery, Floats], Sequence[Leg] | None] = plan_with_one_grasp
+    # First brings the body to where there is more room
     by_freeing: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_by_freeing
 
 
@@ -216,13 +211,10 @@ OFF_LATTICE_PLANNERS = OffLatticePlanners()
 
 
 def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None = OFF_LATTICE_PLANNERS) -> CarryingPlan:
-    """Return the plan of the first planner that finds one, or a plan without legs that says why none does.
-
-    The CarryingPlan holds a status ("found", "impossible" or "limit"), legs in order and the end of the body, squares,
-    table frame; when not found the reason, "body", "hold", "start" or "goal", and the motion plan of the body alone.
-    `query` : the body, the robot, the goal, and what is in the way. `off_lattice` : the planners asked after those by
-    whole squares; None for none.
-    """
+    """Return the plan of the first planner that finds one, or a plan without legs that says why none does."""
+    # The CarryingPlan holds a status ("found", "impossible" or "limit"), legs in order and the end of the body,
+    # squares, table frame; when not found the reason, "body", "hold", "start" or "goal", and the motion plan of the
+    # body alone.
     plan = query.workspace.once(("on lattice", *query.key), partial(_pressed_plan_on_lattice, query))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
@@ -241,24 +233,12 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None 
 
 
 def _pressed_plan_on_lattice(query: ManipulationQuery) -> CarryingPlan | None:
-    """Return the plan by whole squares and quarter turns, pressed into a corner where that is wished; None for none.
-
-    It is asked for again where no plan on the lattice is found: then all ways are looked for.
-    """
+    """Return the plan by whole squares and quarter turns, pressed into a corner where that is wished; None for none."""
     return _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:
-    """Raise ValueError for arguments of plan_carrying that make no sense; return None otherwise.
-
-    Parameters
-    ----------
-    free, walk : (rows, columns) bool, of the same shape and not empty; `walk` may be None.
-    utak : (x, y), squares; finite, as are all offsets in `avoid`.
-    margin : squares, finite and not negative.
-    avoid : (x, y) offsets of grasps, squares.
-    turn : commands, 1 to MAX_TURN_COST.
-    """
+    """Raise ValueError for arguments of plan_carrying that make no sense; return None otherwise."""
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
     require_bounded([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
@@ -277,11 +257,7 @@ def _body(shape: Any) -> Any:
 
 
 def _check_goal(goal: End) -> None:
-    """Raise ValueError for a goal that makes no sense; return None otherwise.
-
-    Numbers must be finite and bounded, sx and sy 1 or -1, slack and press not negative, and the two walls of a corner
-    must meet at an angle whose sine is at least MIN_WALLS_SINE.
-    """
+    """Raise ValueError for a goal that makes no sense; return None otherwise."""
     if isinstance(goal, At):
         require_bounded(goal.pose, "the goal")
     elif isinstance(goal, InCorner):
@@ -299,12 +275,7 @@ def _check_goal(goal: End) -> None:
 
 
 def _plan_of(query: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPlan | None:
-    """Return the plan of some legs, status "found", when they are free and lead to the goal; else None.
-
-    The plan holds the legs, the end pose relative to how the body lies (x, y in squares, degrees of all turns added up)
-    and the polygon at the end, table frame. `query` : the body, the goal, and what is in the way. `legs` : in order;
-    None when a planner found none.
-    """
+    """Return the plan of some legs, status "found", when they are free and lead to the goal; else None."""
     shape = query.shape
     end = None if legs is None else verified(query.workspace, shape, legs)
     if legs is None or end is None or not is_goal_met(query.goal, shape, end):

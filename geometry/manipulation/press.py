@@ -16,14 +16,7 @@ from geometry.motion.se2 import Motion, Rotate, Translate
 
 
 def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:
-    """Return legs after which the body lies in the corner, made from legs that bring it nearly there.
-
-    A leg holds the robot's place and the motions (Translate, Rotate) from grasp to release, squares, table frame.
-    `query` : the body, the corner, and what is in the way. `legs` : in order; None when a planner found none. The first
-    variant that is free and ends in the corner is returned. The last push is made longer, or another push is added. The
-    legs stay the same (None included) where the goal is no corner with `press` (the squares that a body may be pressed
-    on), where the body lies in the corner already, or where no such push is free.
-    """
+    """Return legs after which the body lies in the corner, made from legs that bring it nearly there."""
     goal, shape = query.goal, query.shape
     if legs is None or not isinstance(goal, InCorner) or not goal.press or not (legs or query.held):
         return legs
@@ -53,11 +46,8 @@ def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> S
 
 
 def _press_distances(goal: InCorner, gap: float) -> list[float]:
-    """Return how far, in squares, to press on towards a wall at a distance `gap` (squares), in the order to try.
-
-    Up to the wall, or else as far as the goal needs; `goal` : the corner, with its `slack` (greatest gap) and `press`
-    (squares that a body may be pressed on). [0.0] where the gap is small enough, [] where it is too wide.
-    """
+    """Return how far, in squares, to press on towards a wall at a distance `gap` (squares), in the order to try."""
+    # Up to the wall, or else as far as the goal needs;
     if gap <= goal.slack:
         return [0.0]
     return [gap, gap - goal.slack] if gap <= goal.slack + goal.press + GOAL_TOLERANCE else []
@@ -69,11 +59,7 @@ def _is_motion(motion: Motion) -> bool:
 
 
 def _last_leg_may_push(query: ManipulationQuery, legs: Sequence[Leg]) -> bool:
-    """Return whether no motion of the last leg pulls, where pulling is forbidden; True where it is allowed.
-
-    `query` : the body before the first leg, and whether the robot may pull. `legs` : all legs from the shape of the
-        query on, at least one.
-    """
+    """Return whether no motion of the last leg pulls, where pulling is forbidden; True where it is allowed."""
     if query.pull:
         return True
     shape = query.shape

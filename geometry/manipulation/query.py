@@ -19,39 +19,23 @@ GRASP_AVOID_DISTANCE = 0.25  # squares; convention: a grasp this near to one tha
 
 @dataclass(frozen=True)
 class ManipulationQuery:
-    """The arguments of plan_carrying, checked; all in squares, table frame.
+    """The arguments of plan_carrying, checked; all in squares, table frame."""
 
-    Attributes
-    ----------
-    shape : shapely Polygon, the body where it lies.
-    workspace : where the body and the robot may be.
-    utak : (x, y) of the robot.
-    goal : where the shape shall end.
-    margin : clearance that pushes and turns should keep.
-    pull : whether the robot may pull; otherwise every push leads towards the body.
-    avoid : offsets of grasps that must not be used (see `Leg.hold`): the robot's place relative to the body's centroid.
-    walk : (rows, columns) bool, row 0 in the south: squares where the robot may walk with empty hands.
-    held : whether the robot holds the shape already, by a grasp that need not be avoided.
-    turn : how many commands a turn counts for.
-    """
-
-    shape: Any
-    workspace: Workspace
-    utak: XY
-    goal: End
-    margin: float
-    pull: bool
+    shape: Any  # shapely Polygon, the body where it lies
+    workspace: Workspace  # where the body and the robot may be
+    utak: XY  # (x, y) of the robot
+    goal: End  # where the shape shall end
+    margin: float  # clearance that pushes and turns should keep
+    pull: bool  # whether the robot may pull; otherwise every push leads towards the body
+    # Offsets of grasps that must not be used (see `Leg.hold`): the robot's place relative to the body's centroid.
     avoid: tuple[XY, ...]
-    walk: Bools
-    held: bool = False
-    turn: float = 1.0
+    walk: Bools  # (rows, columns) bool, row 0 in the south: squares where the robot may walk with empty hands
+    held: bool = False  # whether the robot holds the shape already, by a grasp that need not be avoided
+    turn: float = 1.0  # how many commands a turn counts for
 
     @property
     def square(self) -> tuple[int, int]:
-        """Return (column, row) of the robot's square, the nearest one of the table when it is outside.
-
-        Column 0 is in the west, row 0 in the south.
-        """
+        """Return (column, row) of the robot's square, the nearest one of the table when it is outside."""
         rows, columns = self.walk.shape
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
@@ -68,34 +52,16 @@ class ManipulationQuery:
         return self.shape.wkb, goal_key(self.goal), *rest
 
     def grasp_offset(self, place: XY) -> XY:
-        """Return a place (x, y), table frame, relative to the centroid of the shape as it lies now, in squares.
-
-        It is an offset as in `Leg.hold`.
-        """
+        """Return a place (x, y), table frame, relative to the centroid of the shape as it lies now, in squares."""
         return place[0] - self.middle[0], place[1] - self.middle[1]
 
     def is_avoided(self, x: float, y: float) -> bool:
-        """Return whether a grasp must be avoided: one at most GRASP_AVOID_DISTANCE squares from one of `avoid`.
-
-        `x`, `y` : its offset from the centroid of the shape as it lies now, squares.
-        """
+        """Return whether a grasp must be avoided: one at most GRASP_AVOID_DISTANCE squares from one of `avoid`."""
         return any(math.dist((x, y), refuted) <= GRASP_AVOID_DISTANCE for refuted in self.avoid)
 
 
 def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = False) -> ManipulationQuery:
-    """Return the query that is left after some legs: shape and robot are elsewhere, the goal is the same.
-
-    A new ManipulationQuery with the shape and the robot's place at the end of the legs, squares, table frame;
-    workspace, margin, walkable squares and the commands that a turn counts for stay. Without legs only `held` changes.
-
-    Grasp offsets in `avoid` turn with the shape; a goal pose becomes relative to where the shape then lies.
-
-    Parameters
-    ----------
-    query : the query before.
-    legs : in order; they are not verified.
-    held : whether the robot still holds the shape at the end of the legs; otherwise it has empty hands there.
-    """
+    """Return the query that is left after some legs: shape and robot are elsewhere, the goal is the same."""
     shape, utak = query.shape, query.utak
     for leg in legs:
         utak = leg.place
@@ -109,19 +75,9 @@ def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = Fals
 
 
 def join_legs(first: Sequence[Leg], following: Sequence[Leg]) -> list[Leg]:
-    """Return legs followed by the legs of the query after them, with all grasp offsets in the frame of the first query.
-
-    A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    (degrees, about the robot) in order, in squares, table frame. Only the `hold` of the following legs is changed: it
-    is turned back.
-
-    Where the following legs go on with the grasp that the robot has (`taken`), the legs on both sides become one.
-
-    Parameters
-    ----------
-    first : legs of the first query.
-    following : legs of query_after(query, first), with grasp offsets in the frame of the shape as it lies then.
-    """
+    """Return legs followed by the legs of the query after them, with grasp offsets in the frame of the first query."""
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame.
     degrees = total_rotation(first)
     rest = [replace(leg, hold=_rotated_offset(leg.hold, -degrees)) for leg in following]
     if first and rest and rest[0].taken:
@@ -135,16 +91,7 @@ def total_rotation(legs: Sequence[Leg]) -> float:
 
 
 def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
-    """Return the same goal for a shape that has been moved; only a goal pose changes, being relative to the shape.
-
-    The pose then holds the (x, y) squares that the centroid has still to go, table frame, and the degrees still to
-    turn, rounded to 7 digits; every other goal is returned itself.
-
-    Parameters
-    ----------
-    before, now : the shape (shapely Polygon, table frame) as it lay, and as it lies now.
-    degrees : by which it was turned, counter-clockwise positive.
-    """
+    """Return the same goal for a shape that has been moved; only a goal pose changes, being relative to the shape."""
     if not isinstance(goal, At):
         return goal
     there, here = shape_at_pose(before, goal.pose).centroid, now.centroid

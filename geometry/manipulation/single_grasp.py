@@ -50,18 +50,10 @@ CORNER_GAP = 0.1  # squares; convention: the gap at which a body is put before t
 
 
 def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | None:
-    """Return one leg that leads to the goal, the first that is short enough or the best of some; None if none is found.
-
-    A list of one leg, verified. Short enough are FEW_MOTIONS motions. A leg holds all from grasp to release: the
-    robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
-    squares, table frame. The best has the fewest commands.
-
-    Parameters
-    ----------
-    query : the body, the robot, the goal, and what is in the way.
-    track : (n, 3) float64, a path of the body alone: x, y in squares, table frame, and angle in radians of some point
-        of it; may be empty. Grasps with which it would bring the robot into walls are tried last.
-    """
+    """Return one leg that leads to the goal, the first that is short enough or the best of some."""
+    # None if none is found.
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame.
     candidates = sorted(grasp_candidates(query), key=lambda candidate: grasp_rank(query, candidate, track))[:MAX_GRASPS]
     left, legs = MAX_GRASP_CELLS, list[Leg]()
     for candidate in candidates:
@@ -79,16 +71,9 @@ def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | 
 
 
 def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
-    """Return legs by whole squares to a place with room all round, near the goal pose, followed by one leg to the goal.
-
-    The place is anywhere for another goal than a pose. None when none are found. A leg holds all from grasp to release:
-    the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
-    squares, table frame. Where the leg to the goal goes on with the grasp before it, the two are one leg.
-
-    Parameters
-    ----------
-    query : the body, the robot, the goal, and what is in the way.
-    """
+    """Return legs by whole squares to a place with room about it near the goal pose, then one leg to the goal."""
+    # None when none are found. A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then
+    # Translate (dx, dy) and Rotate (degrees, about the robot) in order, in squares, table frame.
     near = None
     if isinstance(query.goal, At):
         there = shape_at_pose(query.shape, query.goal.pose).centroid
@@ -104,12 +89,7 @@ def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
 
 
 def goal_poses(query: ManipulationQuery) -> list[Pose | Inside]:
-    """Return the goal as poses of the body's centroid, or as regions, in the order in which to try them.
-
-    `query` : the body as it lies, and the goal. Poses are in the table frame, squares; their degrees are relative to
-        how the body lies now. In a corner: near the walls, turned by quarters; where the body must not reach far from
-        the walls, it is aligned with the axes first. [] for a Roomy goal.
-    """
+    """Return the goal as poses of the body's centroid, or as regions, in the order in which to try them."""
     goal, middle = query.goal, query.shape.centroid
     if isinstance(goal, Inside):
         return [goal]
@@ -124,11 +104,7 @@ def goal_poses(query: ManipulationQuery) -> list[Pose | Inside]:
 
 
 def _pose_in_corner(goal: InCorner, shape: Any, degrees: float) -> Pose:
-    """Return the pose of the centroid in which a shape, turned by `degrees`, lies near both walls of a corner.
-
-    Table frame. The gap to each wall is CORNER_GAP squares, or half the slack of the goal if that is less. `shape` :
-    shapely Polygon as it lies.
-    """
+    """Return the pose of the centroid in which a shape, turned by `degrees`, lies near both walls of a corner."""
     x0, y0, x1, y1 = shape_at_pose(shape, Pose(0.0, 0.0, degrees)).bounds
     away = min(CORNER_GAP, goal.slack / 2)
     dx = goal.x - goal.sx * away - (x1 if goal.sx > 0 else x0)
@@ -137,11 +113,7 @@ def _pose_in_corner(goal: InCorner, shape: Any, degrees: float) -> Pose:
 
 
 def _flush_rotations(goal: Between, shape: Any) -> list[float]:
-    """Return the rotations that lay one of a shape's sides along a wall, in degrees, least first; before them 0.
-
-    `goal` : the two walls, by their normals. `shape` : shapely Polygon as it lies, table frame. At most MAX_FLUSH_TURNS
-        of them, from -180 to 180, counter-clockwise positive. Sides are those of the convex hull.
-    """
+    """Return the rotations that lay one of a shape's sides along a wall, in degrees, least first; before them 0."""
     ring = np.array(shapely.convex_hull(shape).exterior.coords)
     sides = np.degrees(np.arctan2(*np.diff(ring, axis=0).T[::-1]))
     turns = {
@@ -154,11 +126,7 @@ def _flush_rotations(goal: Between, shape: Any) -> list[float]:
 
 
 def _pose_between_walls(goal: Between, shape: Any, degrees: float) -> Pose:
-    """Return the pose of the centroid in which a shape, turned by `degrees`, lies near two walls.
-
-    Table frame. The gap to each wall is CORNER_GAP squares less than the slack of the goal, at least half of it.
-    `shape` : shapely Polygon as it lies.
-    """
+    """Return the pose of the centroid in which a shape, turned by `degrees`, lies near two walls."""
     one, two = goal.gaps(shape_at_pose(shape, Pose(0.0, 0.0, degrees)))
     away = max(goal.slack - CORNER_GAP, goal.slack / 2)  # walls at an angle appear as stairs that stand out
     dx, dy = goal.move((one - away, two - away))
@@ -168,20 +136,10 @@ def _pose_between_walls(goal: Between, shape: Any, degrees: float) -> Pose:
 def _leg(
     query: ManipulationQuery, candidate: GraspCandidate, goal: Pose | Inside, with_margin: bool, cells: int
 ) -> tuple[Leg | None, int]:
-    """Return the leg with one grasp, or None, and how many cells the search took.
-
-    A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    (degrees, about the robot) in order, in squares, table frame. None when the robot reaches nothing there, no motions
-    are found, or a pull is needed and forbidden. The leg is not verified.
-
-    Parameters
-    ----------
-    query : the body, the robot, the goal, and what is in the way.
-    candidate : the grasp.
-    goal : pose of the body's centroid, table frame, or a region.
-    with_margin : whether body and robot have their clearance.
-    cells : the number of cells of poses that the search may take.
-    """
+    """Return the leg with one grasp, or None, and how many cells the search took."""
+    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    # (degrees, about the robot) in order, in squares, table frame. None when the robot reaches nothing there, no
+    # motions are found, or a pull is needed and forbidden.
     square = direction_to_grasp(query.shape, candidate.place)
     if square is None and not candidate.taken:
         return None, 0
@@ -196,18 +154,8 @@ def _leg(
 def _motions(
     query: ManipulationQuery, place: XY, goal: Pose | Inside, with_margin: bool, cells: int
 ) -> tuple[tuple[Motion, ...], int]:
-    """Return the motions that bring the shape to a goal with a grasp at `place`, and how many cells the search took.
-
-    Translate and Rotate (about the robot) in order, table frame; () when none are found.
-
-    Parameters
-    ----------
-    query : the body as it lies, and what is in the way.
-    place : (x, y) of the robot, squares, table frame.
-    goal : pose of the body's centroid, table frame, or a region.
-    with_margin : whether body and robot have their clearance.
-    cells : the number of cells of poses that the search may take.
-    """
+    """Return the motions that bring the shape to a goal with a grasp at `place`, and how many cells the search took."""
+    # Translate and Rotate (about the robot) in order, table frame;
     middle = np.array([query.shape.centroid.x, query.shape.centroid.y])
     utak = (place[0] - middle[0], place[1] - middle[1])
     body = shapely.transform(padded_shape(query.shape, query.margin if with_margin else 0.0), lambda p: p - middle)

@@ -22,24 +22,7 @@ MAX_KEPT_RESULTS = 64  # of one workspace; a bound on memory, some kilobytes eac
 
 
 class Workspace:
-    """The squares on which a body and the robot may be; all else, and all outside the array, is wall.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, row 0 in the south; square (column, row) reaches from (column, row) to (column + 1, row
-        + 1) in the table frame.
-    walls : shapely geometry, squares, table frame, the walls among and around the squares; None for all that is not
-        free. Where walls are known better than by squares, `free` are those squares that they leave whole.
-
-    Attributes
-    ----------
-    free : the same array.
-    outer : shapely Polygon, the box to whose edge the surrounding wall reaches, OUTER_WALL_THICKNESS squares around the
-        array.
-    floor_polygon : shapely geometry, squares, table frame, where a body may be.
-    walls : list of shapely Polygon, squares, table frame: `outer` without the floor.
-    obstacles : the walls, prepared for exact first contact.
-    """
+    """The squares on which a body and the robot may be; all else, and all outside the array, is wall."""
 
     def __init__(self, free: Bools, walls: Any = None) -> None:
         rows, columns = free.shape
@@ -54,13 +37,8 @@ class Workspace:
         self._known: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, work: Callable[[], Remembered]) -> Remembered:
-        """Return what some work comes to; it is remembered, so that it is done once while it is asked for now and then.
-
-        Parameters
-        ----------
-        key : what the work is, with all that its result depends on beside the squares and walls.
-        work : returns the result, which nobody changes.
-        """
+        """Return what some work comes to."""
+        # It is remembered, so that it is done once while it is asked for now and then.
         found: Remembered = self._known.pop(key) if key in self._known else work()
         self._known[key] = found  # the last one: those that were not asked for longest come first
         if len(self._known) > MAX_KEPT_RESULTS:
@@ -69,23 +47,12 @@ class Workspace:
 
     @cached_property
     def floor(self) -> ObstacleField:
-        """Return the walls prepared for plan_motion, with the table as bounds. Computed on first access.
-
-        The ObstacleField holds the united walls, bounds (0, 0, columns, rows) for a body's reference point, and a
-        raster of distances to the walls, squares, table frame.
-        """
+        """Return the walls prepared for plan_motion, with the table as bounds. Computed on first access."""
         rows, columns = self.free.shape
         return ObstacleField(self.walls, (0.0, 0.0, float(columns), float(rows)))
 
     def lets(self, shape: Any, utak: tuple[float, float], motion: Motion) -> bool:
-        """Return whether shape and robot as one rigid body can make a motion to its end; touching walls is allowed.
-
-        Parameters
-        ----------
-        shape : shapely Polygon where it lies, squares, table frame.
-        utak : (x, y) of the robot in the same frame.
-        motion : Translate or Rotate, table frame.
-        """
+        """Return whether shape and robot as one rigid body can make a motion to its end; touching walls is allowed."""
         return self.is_free(ContactBody(shape, [utak]), motion)
 
     def is_free(self, body: ContactBody, motion: Motion) -> bool:
@@ -93,26 +60,14 @@ class Workspace:
         return self.obstacles.first_contact(body, motion).fraction >= FULL_MOTION
 
     def far(self, body: ContactBody, vectors: Floats) -> Bools:
-        """Return which pushes a body can make to their ends, each from where it stands: (n,) bool.
-
-        Parameters
-        ----------
-        body : shape and robot where they stand, squares, table frame.
-        vectors : (n, 2) float64, the pushes (dx, dy) in squares, table frame.
-        """
+        """Return which pushes a body can make to their ends, each from where it stands: (n,) bool."""
         free: Bools = self.obstacles.pushes(body, vectors) >= FULL_MOTION
         return free
 
 
 def workspace_of(free: Bools, walls: Any = None) -> Workspace:
-    """Return the workspace of some free squares, the same one as before where it was asked for not long ago.
-
-    Squares are asked about again and again while a robot walks, for several goals.
-
-    Parameters
-    ----------
-    free, walls : as for `Workspace`; those with walls of their own are made anew.
-    """
+    """Return the workspace of some free squares, the same one as before where it was asked for not long ago."""
+    # Squares are asked about again and again while a robot walks, for several goals.
     if walls is not None:
         return Workspace(free, walls)
     return _workspace_of_squares(free.tobytes(), free.shape[0], free.shape[1])
@@ -125,43 +80,24 @@ def _workspace_of_squares(free: bytes, rows: int, columns: int) -> Workspace:
 
 
 def widened_body(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
-    """Return shape and robot as one body, widened by a margin (squares) and by ROBOT_CLEARANCE.
-
-    The ContactBody holds the edges of the padded shape and of the robot's square, squares, table frame, and no points.
-
-    Parameters
-    ----------
-    shape : shapely Polygon where it lies, squares, table frame.
-    utak : (x, y) of the robot in the same frame; it becomes a square.
-    margin : squares around the shape.
-    """
+    """Return shape and robot as one body, widened by a margin (squares) and by ROBOT_CLEARANCE."""
     return ContactBody(shapely.MultiPolygon(shapely.get_parts([padded_shape(shape, margin), clear_square(utak)])))
 
 
 def padded_shape(shape: Any, margin: float) -> Any:
-    """Return a shape with a margin (squares) around it, its corners kept sharp; the shape itself without a margin.
-
-    `shape` : shapely Polygon, any frame.
-    """
+    """Return a shape with a margin (squares) around it, its corners kept sharp; the shape itself without a margin."""
     return shape.buffer(margin, join_style="mitre") if margin > 0.0 else shape
 
 
 def clear_square(utak: tuple[float, float]) -> Any:
-    """Return the square about the robot that should stay free: shapely Polygon, squares, table frame.
-
-    Its sides are ROBOT_CLEARANCE from the robot's place `utak` (x, y).
-    """
+    """Return the square about the robot that should stay free: shapely Polygon, squares, table frame."""
     return shapely.box(
         utak[0] - ROBOT_CLEARANCE, utak[1] - ROBOT_CLEARANCE, utak[0] + ROBOT_CLEARANCE, utak[1] + ROBOT_CLEARANCE
     )
 
 
 def _free_rectangles(free: Bools) -> Any:
-    """Return the free squares as few rectangles: a list of shapely Polygons, squares, table frame.
-
-    Sorted by their last row, then by column. Runs along rows, joined with equal runs of the rows that follow. `free` :
-    (rows, columns) bool, row 0 in the south.
-    """
+    """Return the free squares as few rectangles: a list of shapely Polygons, squares, table frame."""
     rectangles = []
     growing: dict[tuple[int, int], int] = {}
     for row, runs in enumerate(_runs_by_row(np.pad(free, ((0, 1), (0, 0))))):
@@ -173,10 +109,7 @@ def _free_rectangles(free: Bools) -> Any:
 
 
 def _runs_by_row(free: Bools) -> list[set[tuple[int, int]]]:
-    """Return for each row the runs of True in it: sets of (first column, column after the last).
-
-    `free` : (rows, columns) bool.
-    """
+    """Return for each row the runs of True in it: sets of (first column, column after the last)."""
     found: list[set[tuple[int, int]]] = [set() for _ in free]
     for row, first, after in runs_along_rows(free).each():
         found[row].add((first, after))

@@ -22,25 +22,7 @@ POINT_HALF_DIAGONAL = 1e-3  # squares: half the diagonal of the square that stan
 def new_moving_body(
     shape: Any, points: Iterable[tuple[float, float]] = (), pivot: tuple[float, float] | None = None
 ) -> MovingBody:
-    """Return a body for planning, made from its shape and from points that move with it.
-
-    Parameters
-    ----------
-    shape : shapely Polygon or MultiPolygon in squares, body frame: its reference point is the origin, not turned.
-    points : (x, y) in the body frame, squares, that move rigidly with the shape and must not enter obstacles either.
-    pivot : (x, y) in the body frame that the body is turned about. None stands for the centre of the smallest enclosing
-        circle, where a turn moves the body least.
-
-    Returns
-    -------
-    MovingBody : edges (m, 7) with outward normals, discs within it and its corners (k, 4), the radius of the circle
-        about the pivot that encloses it, its reference point (2,) and one corner of each part; in squares, body frame
-        shifted so that the pivot is the origin ("centre"). It is cached and shared: its arrays must not be written to.
-
-    Raises
-    ------
-    ValueError : the shape has no area, or a number is not finite or too large.
-    """
+    """Return a body for planning, made from its shape and from points that move with it."""
     at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
     specks = tuple((float(x), float(y)) for x, y in points)
     require_bounded([*specks, *([] if at is None else [at])], "points and pivot")
@@ -51,23 +33,7 @@ def new_moving_body(
 
 @lru_cache(maxsize=32)
 def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> MovingBody:
-    """Return the body of a polygon in WKB, cached: one body is planned for many times. Nothing writes to its arrays.
-
-    Parameters
-    ----------
-    wkb : well-known binary of a shapely Polygon or MultiPolygon, squares, body frame.
-    points : (x, y) in that frame; each becomes a tiny square of half diagonal POINT_HALF_DIAGONAL.
-    pivot : (x, y) in that frame to turn about; None for the centre of the smallest enclosing circle.
-
-    Returns
-    -------
-    MovingBody : edges (m, 7), inscribed discs and corners (k, 4), enclosing radius, reference point (2,) and one corner
-        of each part, in squares, body frame shifted so that the pivot is the origin.
-
-    Raises
-    ------
-    ValueError : the polygon has no area.
-    """
+    """Return the body of a polygon in WKB, cached: one body is planned for many times. Nothing writes to its arrays."""
     shape = shapely.from_wkb(wkb)
     specks = [shapely.Point(p).buffer(POINT_HALF_DIAGONAL, quad_segs=1) for p in points]
     whole = shapely.union_all([shape, *specks]) if specks else shape
@@ -86,19 +52,7 @@ def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Moving
 
 
 def _inscribed_discs(shape: Any, centre: Floats) -> Floats:
-    """Return discs within a shape that cover most of it, the largest first.
-
-    Method: of the candidates on a grid take the one with the most room, then the next that is not near a taken one.
-
-    Parameters
-    ----------
-    shape : shapely Polygon or MultiPolygon, squares, body frame.
-    centre : (2,) x, y in that frame that the result is relative to.
-
-    Returns
-    -------
-    (k, 3) float64 rows x, y, r in squares, x and y relative to `centre`; k is at most MAX_DISCS.
-    """
+    """Return discs within a shape that cover most of it, the largest first."""
     x0, y0, x1, y1 = shape.bounds
     step = max(x1 - x0, y1 - y0) / CANDIDATES_PER_SIDE
     x, y = np.meshgrid(np.arange(x0 + step / 2, x1, step), np.arange(y0 + step / 2, y1, step))
@@ -117,18 +71,7 @@ def _inscribed_discs(shape: Any, centre: Floats) -> Floats:
 
 
 def centre_pose(body: MovingBody, pose: Pose) -> Floats:
-    """Return the pose of the body's centre, the point that it is turned about, when its reference point is at `pose`.
-
-    Parameters
-    ----------
-    body : body made by new_moving_body.
-    pose : pose of the reference point, table frame, squares and degrees.
-
-    Returns
-    -------
-    (3,) float64: x, y of the centre in squares, table frame; angle in radians, counter-clockwise positive, the same
-    angle as that of `pose`.
-    """
+    """Return the pose of the body's centre (it turns about it) when its reference point is at `pose`."""
     angle = math.radians(pose.degrees)
     c, s = math.cos(angle), math.sin(angle)
     ox, oy = body.reference

@@ -17,67 +17,36 @@ CELL_FREE, CELL_CENTRE_FREE, CELL_UNDECIDED, CELL_BLOCKED, CELL_GIVEN_UP = 0, 1,
 
 
 class MovingBody(NamedTuple):
-    """A body drawn about the centre that it is turned about. Lengths in squares, body frame with that centre as origin.
+    """A body drawn about the centre that it is turned about. Lengths in squares, body frame from that centre."""
 
-    Attributes
-    ----------
-    edges : (m, 7) float64 rows x0, y0, x1, y1, outward unit normal x and y, length; ring after ring, interior on the
-        left.
-    probes : (k, 4) float64 rows x, y, r, distance of (x, y) from the centre. The body covers the disc of radius r about
-        (x, y); first come the inscribed discs, the largest first, then the corners with r = 0.
-    radius : radius of the circle about the centre that encloses the body.
-    reference : (2,) x, y of the body's reference point (the origin that its shape was given about), relative to the
-        centre.
-    seeds : (parts, 2) x, y of one corner of each connected part.
-    """
-
+    # (m, 7) float64 rows x0, y0, x1, y1, outward unit normal x and y, length; ring after ring, interior on the left
     edges: Floats
+    # (k, 4) float64 rows x, y, r, distance of (x, y) from the centre. The body covers the disc of radius r about (x,
+    # y); first come the inscribed discs, the largest first, then the corners with r = 0.
     probes: Floats
-    radius: float
+    radius: float  # radius of the circle about the centre that encloses the body
+    # (2,) x, y of the body's reference point (the origin that its shape was given about), relative to the centre
     reference: Floats
-    seeds: Floats
+    seeds: Floats  # (parts, 2) x, y of one corner of each connected part
 
 
 class NearbyEdges(NamedTuple):
-    """Obstacle edges looked up by place, and the bounds within which a body moves. Squares, table frame.
+    """Obstacle edges looked up by place, and the bounds within which a body moves. Squares, table frame."""
 
-    The raster divides the table into square pixels, row 0 in the south; blocks are squares of pixels, numbered row by
-    row from the raster's lower left corner: block = row of blocks * blocks in a row + column of blocks.
-
-    Attributes
-    ----------
-    edges : (n, 7) edges of the united obstacles, as in MovingBody.
-    raster : (rows, columns) signed distance from pixel centres to the obstacles, negative inside.
-    frame : (3,) x, y of the raster's lower left corner, side of a pixel.
-    block_start : (blocks + 1,) where the list of each block begins in `block_edges`.
-    block_edges : for each block of pixels the indices of the edges within reach of a body whose centre is there.
-    blocks : (2,) number of blocks in a row of blocks, number of pixels along the side of a block.
-    reach : edges further than this from the body may be missing in the block's list; distances are known up to it.
-    bounds : (4,) x0, y0, x1, y1 that the body's reference point must not leave.
-    """
-
-    edges: Floats
-    raster: Floats
-    frame: Floats
-    block_start: Longs
-    block_edges: Longs
-    blocks: Longs
+    edges: Floats  # (n, 7) edges of the united obstacles, as in MovingBody
+    raster: Floats  # (rows, columns) signed distance from pixel centres to the obstacles, negative inside
+    frame: Floats  # (3,) x, y of the raster's lower left corner, side of a pixel
+    block_start: Longs  # (blocks + 1,) where the list of each block begins in `block_edges`
+    block_edges: Longs  # for each block of pixels the indices of the edges within reach of a body whose centre is there
+    blocks: Longs  # (2,) number of blocks in a row of blocks, number of pixels along the side of a block
+    # Edges further than this from the body may be missing in the block's list; distances are known up to it
     reach: float
-    bounds: Floats
+    bounds: Floats  # (4,) x0, y0, x1, y1 that the body's reference point must not leave
 
 
 @bare
 def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, float]:
-    """Return (signed distance to the obstacles at the pixel of (x, y), how far its centre is from there), in squares.
-
-    The distance is negative inside obstacles. The true distance at (x, y) differs from the first by at most the second.
-    (x, y) is in the table frame; outside the raster the nearest pixel is taken.
-
-    Parameters
-    ----------
-    nearby : the obstacle edges, of which the raster of distances and its frame are read.
-    x, y : the point, squares, table frame.
-    """
+    """Return (signed distance to the obstacles at the pixel of (x, y), how far its centre is from there)."""
     rows, columns = nearby.raster.shape
     pixel = nearby.frame[2]
     column = min(max(int((x - nearby.frame[0]) / pixel), 0), columns - 1)
@@ -89,16 +58,7 @@ def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, flo
 
 @bare
 def block_at(nearby: NearbyEdges, x: float, y: float) -> int:
-    """Return the number of the block of pixels that (x, y) lies in, or of the nearest one outside the raster.
-
-    The number is row of blocks * blocks in a row + column of blocks, from 0 in the south-west; it is an index into
-    nearby.block_start.
-
-    Parameters
-    ----------
-    nearby : the obstacle edges, with the blocks into which their raster is divided.
-    x, y : the point, squares, table frame.
-    """
+    """Return the number of the block of pixels that (x, y) lies in, or of the nearest one outside the raster."""
     size = nearby.frame[2] * nearby.blocks[1]
     columns = nearby.blocks[0]
     rows = (len(nearby.block_start) - 1) // columns
@@ -109,10 +69,7 @@ def block_at(nearby: NearbyEdges, x: float, y: float) -> int:
 
 @bare
 def squared_distance_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
-    """Return the squared distance, in squares squared, from the point (x, y) to the segment that is row `j` of `edges`.
-
-    `edges` : (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length, in the frame of (x, y).
-    """
+    """Return the squared distance from the point (x, y) to the segment that is row `j` of `edges`."""
     px, py = x - edges[j, 0], y - edges[j, 1]
     nx, ny = edges[j, 4], edges[j, 5]
     along = nx * py - ny * px
@@ -123,11 +80,7 @@ def squared_distance_to_edge(x: float, y: float, edges: Floats, j: int) -> float
 
 @bare
 def is_inside(x: float, y: float, edges: Floats) -> bool:
-    """Return whether (x, y) is inside closed rings, by the even-odd rule. On the boundary either answer may come.
-
-    `edges` : (n, 7) or (n, 4) rows that begin with x0, y0, x1, y1, all rings together (holes count as outside), in the
-        frame of (x, y). False without edges.
-    """
+    """Return whether (x, y) is inside closed rings, by the even-odd rule. On the boundary either answer may come."""
     odd = False
     for j in range(len(edges)):
         y0, y1 = edges[j, 1], edges[j, 3]
@@ -138,16 +91,7 @@ def is_inside(x: float, y: float, edges: Floats) -> bool:
 
 @bare
 def signed_distance(x: float, y: float, nearby: NearbyEdges, block: int) -> float:
-    """Return the distance in squares from (x, y) to the obstacles: negative inside them, capped at nearby.reach.
-
-    Without any edge in the block's list it is +nearby.reach, even inside an obstacle.
-
-    Parameters
-    ----------
-    x, y : a point of a placed body, squares, table frame.
-    nearby : the obstacle edges.
-    block : number of the block of pixels (see block_at) in which the centre of that body lies, not the point itself.
-    """
+    """Return the distance in squares from (x, y) to the obstacles: negative inside them, capped at nearby.reach."""
     edges = nearby.edges
     best, side = nearby.reach * nearby.reach, 1e9
     for k in range(nearby.block_start[block], nearby.block_start[block + 1]):
@@ -164,16 +108,7 @@ def signed_distance(x: float, y: float, nearby: NearbyEdges, block: int) -> floa
 
 @bare
 def clearance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
-    """Return the distance in squares between the placed body and the obstacles; -1.0 if they overlap.
-
-    Distances are capped at nearby.reach; touching counts as 0.0. The bounds of the reference point are not looked at.
-
-    Parameters
-    ----------
-    body, nearby : the body, and the obstacle edges prepared for its radius.
-    x, y : place of the body's centre, table frame, squares.
-    c, s : cosine and sine of the body's angle, counter-clockwise from how it was drawn.
-    """
+    """Return the distance in squares between the placed body and the obstacles; -1.0 if they overlap."""
     edges, body_edges = nearby.edges, body.edges
     best = nearby.reach * nearby.reach
     block = block_at(nearby, x, y)
@@ -197,14 +132,7 @@ def clearance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: f
 
 @bare
 def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, body_edges: Floats) -> float:
-    """Return the squared distance from an obstacle's edge to the body, in squares squared; -1.0 if they overlap.
-
-    Parameters
-    ----------
-    ax, ay, bx, by : the ends a and b of the edge, squares, body frame.
-    length : of that edge, squares.
-    body_edges : (m, 7) MovingBody.edges, in the same frame.
-    """
+    """Return the squared distance from an obstacle's edge to the body, in squares squared; -1.0 if they overlap."""
     ux, uy = (bx - ax) / length, (by - ay) / length
     best, odd = 1e18, False
     before = ux * (body_edges[0, 1] - ay) - uy * (body_edges[0, 0] - ax)
@@ -230,25 +158,7 @@ def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, bod
 def classify_cell(
     body: MovingBody, nearby: NearbyEdges, x: float, y: float, angle: float, spread: float, half: float
 ) -> int:
-    """Return the kind of a cell of poses: places at most `spread` from (x, y), angles at most `half` from `angle`.
-
-    The kinds are whole numbers in the order CELL_FREE 0, CELL_CENTRE_FREE 1, CELL_UNDECIDED 2, CELL_BLOCKED 3: the
-    lower, the freer.
-
-    Parameters
-    ----------
-    body, nearby : the body, and the obstacle edges prepared for its radius, with the bounds of its reference point.
-    x, y, angle : the middle of the cell, a pose of the body's centre: squares, table frame; radians.
-    spread : greatest distance of a place in the cell from (x, y), in squares.
-    half : half of the cell's interval of angles, in radians.
-
-    Returns
-    -------
-    CELL_FREE : the body overlaps nothing at any pose of the cell, and its reference point is within bounds.
-    CELL_BLOCKED : at every pose it overlaps an obstacle or is out of bounds.
-    CELL_CENTRE_FREE : neither is known, and the pose in the middle is free.
-    CELL_UNDECIDED : neither is known, and the pose in the middle is not free or was not looked at.
-    """
+    """Return the kind of a cell of poses: places at most `spread` from (x, y), angles at most `half` from `angle`."""
     c, s = math.cos(angle), math.sin(angle)
     swing = 2.0 * math.sin(min(half, math.pi) / 2)
     where = _in_bounds(body, nearby, x, y, c, s, spread, swing)
@@ -277,20 +187,7 @@ def classify_cell(
 def _in_bounds(
     body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> int:
-    """Return the cell's kind, a number CELL_FREE ... CELL_BLOCKED, by the bounds of the reference point alone.
-
-    CELL_FREE (0): within bounds at every pose of the cell; CELL_CENTRE_FREE (1): in its middle; CELL_UNDECIDED (2): not
-    there, but perhaps elsewhere; CELL_BLOCKED (3): out of bounds at every pose.
-
-    Parameters
-    ----------
-    body, nearby : the body, and the bounds (x0, y0, x1, y1) that its reference point must not leave.
-    x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine of
-        the angle.
-    spread : greatest distance of a place in the cell from (x, y), squares.
-    swing : how far a point at distance 1 from the centre moves at most when the body turns from the middle of the
-        cell's angles to their end (a chord).
-    """
+    """Return the cell's kind, a number CELL_FREE ... CELL_BLOCKED, by the bounds of the reference point alone."""
     ox, oy = body.reference[0], body.reference[1]
     rx, ry = x + c * ox - s * oy, y + s * ox + c * oy
     bounds = nearby.bounds
@@ -307,19 +204,7 @@ def _in_bounds(
 def _always_overlaps(
     body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> bool:
-    """Return whether the body surely overlaps an obstacle at every pose of a cell; False proves nothing.
-
-    Proofs tried: an inscribed disc or a corner of one stays inside the other, or two edges keep crossing.
-
-    Parameters
-    ----------
-    body, nearby : the body, and the obstacle edges prepared for its radius.
-    x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine of
-        the angle.
-    spread : greatest distance of a place in the cell from (x, y), squares.
-    swing : how far a point at distance 1 from the centre moves at most when the body turns from the middle of the
-        cell's angles to their end (a chord).
-    """
+    """Return whether the body surely overlaps an obstacle at every pose of a cell; False proves nothing."""
     block = block_at(nearby, x, y)
     if _keeps_crossing(
         body.edges, nearby.edges, nearby.block_edges, nearby.block_start, block, x, y, c, s, spread, swing
@@ -362,20 +247,7 @@ def _keeps_crossing(
     spread: float,
     swing: float,
 ) -> bool:
-    """Return whether some edge of the body crosses one of an obstacle at every pose of a cell; False proves nothing.
-
-    Edges keep crossing while the ends of each stay on their sides of the other's line: the cell moves no end across it.
-
-    Parameters
-    ----------
-    body_edges : (m, 7) MovingBody.edges, body frame.
-    edges : (n, 7) obstacle edges, table frame.
-    block_edges, block_start : rows of `edges` near block n are block_edges[block_start[n] : block_start[n + 1]].
-    block : number of the block of pixels that (x, y) lies in.
-    x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine.
-    spread : greatest distance of a place in the cell from (x, y), squares.
-    swing : chord of half the cell's turn per square of distance from the centre.
-    """
+    """Return whether some edge of the body crosses one of an obstacle at every pose of a cell; False proves nothing."""
     for k in range(block_start[block], block_start[block + 1]):
         j = block_edges[k]
         ax, ay, bx, by = edges[j, 0] - x, edges[j, 1] - y, edges[j, 2] - x, edges[j, 3] - y

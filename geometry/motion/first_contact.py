@@ -38,21 +38,14 @@ MIN_EDGE_LENGTH = 1e-7  # squares: shorter edges are left out; ten skin depths, 
 
 
 class Contact(NamedTuple):
-    """The end of a motion at its first contact, or unstopped.
+    """The end of a motion at its first contact, or unstopped."""
 
-    Attributes
-    ----------
-    fraction : part of the motion that was travelled, 0 to 1; 1 when nothing stopped it.
-    place : point of contact (x, y), squares, table frame, after the motion; None when nothing stopped it.
-    obstacle : index of the obstacle that stopped it, in the sequence that `Obstacles` was made of; None when nothing
-        stopped it.
-    normal : unit vector (x, y), table frame, across the edges in contact, away from the obstacle; None when nothing
-        stopped it.
-    """
-
-    fraction: float
+    fraction: float  # part of the motion that was travelled, 0 to 1; 1 when nothing stopped it
+    # Point of contact (x, y), squares, table frame, after the motion; None when nothing stopped it
     place: tuple[float, float] | None = None
+    # Index of the obstacle that stopped it, in the sequence that `Obstacles` was made of; None when nothing stopped it
     obstacle: int | None = None
+    # Unit vector (x, y), table frame, across the edges in contact, away from the obstacle; None when nothing stopped it
     normal: tuple[float, float] | None = None
 
 
@@ -81,11 +74,7 @@ class ContactBody:
         self._set_parts(edges, np.array([tuple(p) for p in points], dtype=float).reshape(-1, 2))
 
     def _set_parts(self, edges: Floats, points: Floats) -> None:
-        """Set `edges` (n, 7), `points` (n, 2) and `runs` of this body; squares, table frame.
-
-        The shape meets the obstacles one by one. Points also meet all obstacles as one: in the seam of two flush
-        obstacles, which is inside of their union, only each by itself stops them.
-        """
+        """Set `edges` (n, 7), `points` (n, 2) and `runs` of this body; squares, table frame."""
         self.edges, self.points = edges, points
         solid = [(edges, edges, False)] if len(edges) else []
         loose = [(points, NO_EDGES, True), (points, NO_EDGES, False)] if len(points) else []
@@ -104,31 +93,15 @@ class ContactBody:
 
 
 class ObstaclePart(NamedTuple):
-    """One obstacle, prepared to be put together with others.
+    """One obstacle, prepared to be put together with others."""
 
-    Attributes
-    ----------
-    polygon : shapely Polygon or MultiPolygon, squares, table frame.
-    edges : (n, 7) its edges as rows x0, y0, x1, y1, outward unit normal x and y, length.
-    skin : (n, 7) the same edges drawn inward by SKIN_DEPTH, row for row.
-    """
-
-    polygon: Any
-    edges: Floats
-    skin: Floats
+    polygon: Any  # shapely Polygon or MultiPolygon, squares, table frame
+    edges: Floats  # (n, 7) its edges as rows x0, y0, x1, y1, outward unit normal x and y, length
+    skin: Floats  # (n, 7) the same edges drawn inward by SKIN_DEPTH, row for row
 
 
 def obstacle_part(polygon: Any) -> ObstaclePart:
-    """Return a polygon prepared as an obstacle.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon or MultiPolygon, holes allowed, squares, table frame.
-
-    Returns
-    -------
-    ObstaclePart : its edges and their inward copies, (n, 7) each; squares, table frame.
-    """
+    """Return a polygon prepared as an obstacle."""
     edges = with_normals(boundary_edges(polygon))
     return ObstaclePart(polygon, edges, _offset_inward(edges, SKIN_DEPTH))
 
@@ -211,17 +184,7 @@ class Obstacles:
         return contact
 
     def _spares_union(self, points: Floats, motion: Motion, x: float, y: float) -> bool:
-        """Return whether points surely meet nothing in a motion, so that `point_surface` need not be computed for them.
-
-        False when it was computed already. A push of points that stay away from all true edges meets no skin, not that
-        of the union either. A point at the pivot of a turn stays where it is.
-
-        Parameters
-        ----------
-        points : (n, 2) x, y before the motion, squares, table frame.
-        motion : Translate or Rotate.
-        x, y : the displacement of a translation, or the pivot of a rotation.
-        """
+        """Return whether points surely meet nothing, so that `point_surface` need not be computed for them."""
         if "point_surface" in self.__dict__:
             return False
         if isinstance(motion, Translate):
@@ -285,17 +248,7 @@ def _finite(numbers: npt.ArrayLike) -> Floats:
 
 
 def boundary_edges(shape: Any) -> Floats:
-    """Return the edges of a polygon's rings, with the interior on their left.
-
-    Parameters
-    ----------
-    shape : shapely Polygon or MultiPolygon, or None; other geometries have no edges.
-
-    Returns
-    -------
-    (n, 4) float64 rows x0, y0, x1, y1, ring after ring, in the units and the frame of the shape; each edge begins where
-    the one before ends, the last ends where the first begins. Edges of no length are left out. (0, 4) without any.
-    """
+    """Return the edges of a polygon's rings, with the interior on their left."""
     pieces = [np.empty((0, 4))]
     parts = [] if shape is None else shapely.get_parts(shapely.orient_polygons(shape))
     for part in parts:
@@ -305,11 +258,7 @@ def boundary_edges(shape: Any) -> Floats:
 
 
 def _ring_edges(points: Floats) -> Floats:
-    """Return the edges of an open ring (n, 2), without points that are within MIN_EDGE_LENGTH of the one before.
-
-    (m, 4) float64 rows x0, y0, x1, y1 in the order of the points, the closing edge included; (0, 4) if fewer than two
-    points are left.
-    """
+    """Return the edges of an open ring (n, 2), without points that are within MIN_EDGE_LENGTH of the one before."""
     step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
     if not (step > MIN_EDGE_LENGTH).all():
         points = _spaced(points)
@@ -317,10 +266,7 @@ def _ring_edges(points: Floats) -> Floats:
 
 
 def _spaced(points: Floats) -> Floats:
-    """Return the points (m, 2) of an open ring (n, 2) without those within MIN_EDGE_LENGTH of the last one kept.
-
-    The first point stays; points before the end that are as near to it are left out, too. n at least 1.
-    """
+    """Return the points (m, 2) of an open ring (n, 2) without those within MIN_EDGE_LENGTH of the last one kept."""
     line = points.tolist()
     kept = line[:1]
     for point in line[1:]:
@@ -332,10 +278,9 @@ def _spaced(points: Floats) -> Floats:
 
 
 def with_normals(edges: Floats) -> Floats:
-    """Return edges (n, 4) with their normals: (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length.
-
-    The interior lies on the left of an edge, so its outward normal points to the right. Edges must not be of length 0.
-    """
+    """Return edges (n, 4) with their normals: (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length."""
+    # The interior lies on the left of an edge, so its outward normal points to the right. Edges must not be of length
+    # 0.
     rows = np.empty((len(edges), 7))
     rows[:, :4] = edges[:, :4]
     along = edges[:, 2:4] - edges[:, :2]
@@ -346,11 +291,7 @@ def with_normals(edges: Floats) -> Floats:
 
 
 def _offset_inward(edges: Floats, depth: float) -> Floats:
-    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row.
-
-    Rows are x0, y0, x1, y1, outward unit normal x and y, length; normals stay, ends and lengths change. A new array in
-    the frame of `edges`.
-    """
+    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row."""
     shifted = edges.copy()
     next_edge = _next_on_ring(edges)
     normal, after = edges[:, 4:6], edges[next_edge, 4:6]
@@ -363,10 +304,7 @@ def _offset_inward(edges: Floats, depth: float) -> Floats:
 
 
 def _chunks(edges: Floats) -> Floats:
-    """Return ranges of EDGES_PER_CHUNK edges and their bounding boxes: (k, 6) rows first, stop, x0, y0, x1, y1.
-
-    `edges` : (n, 7), squares; range `first` to below `stop` are its rows. (0, 6) without edges.
-    """
+    """Return ranges of EDGES_PER_CHUNK edges and their bounding boxes: (k, 6) rows first, stop, x0, y0, x1, y1."""
     first = np.arange(0, len(edges), EDGES_PER_CHUNK)
     if len(first) == 0:
         return np.empty((0, 6))
@@ -377,10 +315,7 @@ def _chunks(edges: Floats) -> Floats:
 
 
 def _next_on_ring(edges: Floats) -> npt.NDArray[np.intp]:
-    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another.
-
-    After the last edge of a ring comes its first.
-    """
+    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another."""
     next_edge = np.arange(1, len(edges) + 1)
     start = 0
     for i in range(len(edges)):

@@ -33,28 +33,7 @@ TIGHT_PIXEL_FACTOR = 60  # a step into a pixel where the disc does not fit costs
 
 
 class ObstacleField:
-    """Obstacles and bounds, prepared once for many calls of plan_motion.
-
-    Parameters
-    ----------
-    obstacles : shapely geometry or a list of them, squares, table frame. Only polygons count.
-    bounds : (x0, y0, x1, y1) of the body's reference point, squares, table frame; None for the bounding box of the
-        obstacles.
-
-    Attributes
-    ----------
-    polygons : list of the obstacles' shapely Polygons, valid.
-    bounds : (4,) x0, y0, x1, y1 in squares, table frame.
-    side : the longer side of the bounds, in squares.
-    surface : the united boundary, for exact first contact.
-    frame : (3,) x, y of the raster's lower left corner in the table frame, side of a pixel; all in squares.
-    raster : (rows, columns) float64, row 0 in the south: signed distance from pixel centres to the obstacles in
-        squares, negative inside.
-
-    Raises
-    ------
-    ValueError : a number is not finite or too large, or the bounds are missing or empty.
-    """
+    """Obstacles and bounds, prepared once for many calls of plan_motion."""
 
     def __init__(self, obstacles: Any, bounds: Sequence[float] | None = None) -> None:
         several = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]
@@ -78,39 +57,20 @@ class ObstacleField:
         self._complements: dict[bytes, ObstacleField] = {}
 
     def finer_raster(self, times: int) -> tuple[Floats, Floats]:
-        """Return (frame, raster) as of this field, with `times` pixels along each side of one of its pixels.
-
-        frame : (3,) x, y of the lower left corner and side of a pixel, squares, table frame.
-        raster : (times * rows, times * columns) float64, row 0 in the south: signed distance from pixel centres to the
-            obstacles in squares, negative inside.
-        """
+        """Return (frame, raster) as of this field, with `times` pixels along each side of one of its pixels."""
         frame = self.frame * np.array([1.0, 1.0, 1.0 / times])
         raster = np.empty((times * self.raster.shape[0], times * self.raster.shape[1]))
         _fill_signed_distances(self.surface.hull, frame, raster)
         return frame, raster
 
     def ground(self, body: MovingBody) -> NearbyEdges:
-        """Return the obstacle edges prepared for a body of this radius; made once for each radius.
-
-        Squares, table frame.
-
-        It holds the edges of the united obstacles, for each block of raster pixels the list of those within reach of a
-        body there, the raster of distances, and the bounds (x0, y0, x1, y1) of the body's reference point.
-
-        `body` : only its radius, in squares, is read.
-        """
+        """Return the obstacle edges prepared for a body of this radius; made once for each radius."""
         if body.radius not in self._grounds:
             self._grounds[body.radius] = self._prepare(body.radius)
         return self._grounds[body.radius]
 
     def complement_of(self, polygon: Any) -> "ObstacleField":
-        """Return the field in which all but `polygon` is an obstacle: a body free there lies within the polygon.
-
-        An ObstacleField in the table frame, in squares, with a raster and edges of its own.
-
-        `polygon` : shapely Polygon or MultiPolygon, squares, table frame; a body must lie in one part of it. The bounds
-            stay those of this field. Made once for each polygon.
-        """
+        """Return the field in which all but `polygon` is an obstacle: a body free there lies within the polygon."""
         key = shapely.to_wkb(polygon)
         if key not in self._complements:
             outer = shapely.box(*self.bounds).buffer(self.side, join_style="mitre")
@@ -120,11 +80,7 @@ class ObstacleField:
         return self._complements[key]
 
     def _prepare(self, radius: float) -> NearbyEdges:
-        """Return the obstacle edges, with a list for each block of pixels, for a body of a radius in squares.
-
-        Table frame, squares. The list of a block holds the edges within two radii of it, and distances are known up to
-        one radius (`reach`).
-        """
+        """Return the obstacle edges, with a list for each block of pixels, for a body of a radius in squares."""
         rows, columns = self.raster.shape
         down, across = math.ceil(rows / BLOCK_PIXELS), math.ceil(columns / BLOCK_PIXELS)
         block_start, block_edges = _list_block_edges(self.surface.hull, self.frame, down, across, 2 * radius)
@@ -134,18 +90,7 @@ class ObstacleField:
         )
 
     def is_free_at(self, body: MovingBody, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
-        """Return whether a body whose reference point is at `pose` is within bounds and at most touches obstacles.
-
-        It may be OVERLAP_TOLERANCE squares deep in an obstacle or out of bounds.
-
-        Parameters
-        ----------
-        body : the body made of `shape` and `points`. The shape itself is looked at only where the body is near
-            obstacles.
-        shape : shapely Polygon or MultiPolygon in squares, body frame (reference point at the origin).
-        points : (x, y) in that frame that move with it.
-        pose : pose of the reference point, squares and degrees, table frame.
-        """
+        """Return whether a body whose reference point is at `pose` is within bounds and at most touches obstacles."""
         x0, y0, x1, y1 = self.bounds
         if not (
             x0 - OVERLAP_TOLERANCE <= pose.x <= x1 + OVERLAP_TOLERANCE
@@ -167,27 +112,13 @@ class ObstacleField:
         return not any(polygon.intersects(speck) for polygon in deep for speck in points_placed)
 
     def disc_distances(self, goals: npt.NDArray[np.bool_], radius: float) -> Floats:
-        """Return for every pixel the estimated length, in squares, of a disc's path to the nearest goal pixel.
-
-        Parameters
-        ----------
-        goals : (rows, columns) bool, pixels of `raster` where paths end.
-        radius : radius of the disc, in squares.
-
-        Returns
-        -------
-        (rows, columns) float64, finite everywhere: pixels too tight for the disc are passed at TIGHT_PIXEL_FACTOR times
-        the length. Without any goal pixel all are huge.
-        """
+        """Return for every pixel the estimated length, in squares, of a disc's path to the nearest goal pixel."""
         unit = self.frame[2] / PIXEL_STEP_COST
         distances: Floats = disc_path_costs(self.raster < radius - self.frame[2], goals) * unit
         return distances
 
     def pixel_mask(self, x: float, y: float) -> npt.NDArray[np.bool_]:
-        """Return a mask that is True at the one pixel of (x, y), or at the nearest pixel for a place off the raster.
-
-        (rows, columns) bool as `raster`, row 0 in the south. (x, y) is in squares, table frame.
-        """
+        """Return a mask that is True at the one pixel of (x, y), or at the nearest pixel for a place off the raster."""
         goals = np.zeros(self.raster.shape, bool)
         column, row = ((np.array([x, y]) - self.frame[:2]) / self.frame[2]).astype(int)
         goals[min(max(row, 0), len(goals) - 1), min(max(column, 0), goals.shape[1] - 1)] = True
@@ -196,16 +127,7 @@ class ObstacleField:
 
 @compiled
 def _fill_signed_distances(edges: Floats, frame: Floats, raster: Floats) -> None:
-    """Fill `raster` with the signed distance, in squares, from every pixel's centre to the obstacles, negative inside.
-
-    Method: for a block of pixels only those edges are looked at that may be the nearest of one of them.
-
-    Parameters
-    ----------
-    edges : (n, 7) edges of the united obstacles, squares, table frame. Without any, distances are 1e6.
-    frame : (3,) x, y of the raster's lower left corner, side of a pixel.
-    raster : (rows, columns) float64, row 0 in the south; output.
-    """
+    """Fill `raster` with the signed distance from every pixel's centre to the obstacles, negative inside."""
     rows, columns = raster.shape
     near, away = np.empty(len(edges), np.int64), np.empty(len(edges))
     reach = 0.7072 * frame[2] * BLOCK_PIXELS  # no pixel's centre is further from the middle of its block
@@ -235,12 +157,7 @@ def _fill_signed_distances(edges: Floats, frame: Floats, raster: Floats) -> None
 
 @compiled
 def _negate_inside(edges: Floats, frame: Floats, raster: Floats) -> None:
-    """Make the distances of pixels inside obstacles negative, by the even-odd rule as in `is_inside`.
-
-    Parameters
-    ----------
-    edges, frame, raster : as for `_fill_signed_distances`; all distances are positive before.
-    """
+    """Make the distances of pixels inside obstacles negative, by the even-odd rule as in `is_inside`."""
     crossing = np.empty(len(edges))
     for row in range(raster.shape[0]):
         y = frame[1] + (row + 0.5) * frame[2]
@@ -262,20 +179,7 @@ def _negate_inside(edges: Floats, frame: Floats, raster: Floats) -> None:
 
 @compiled
 def _list_block_edges(edges: Floats, frame: Floats, rows: int, columns: int, reach: float) -> tuple[Longs, Longs]:
-    """Return the edges within `reach` squares of each block of pixels, as (block_start, block_edges).
-
-    Parameters
-    ----------
-    edges : (n, 7) edges of the obstacles, squares, table frame.
-    frame : (3,) x, y of the raster's lower left corner, side of a pixel.
-    rows, columns : number of rows and columns of blocks, each BLOCK_PIXELS wide.
-    reach : squares; edges a little further away may be listed, too.
-
-    Returns
-    -------
-    block_start (rows * columns + 1,), block_edges (k,) int64: rows of `edges` near block n are
-    block_edges[block_start[n] : block_start[n + 1]]; n = row * columns + column, row 0 in the south.
-    """
+    """Return the edges within `reach` squares of each block of pixels, as (block_start, block_edges)."""
     block_start = np.zeros(rows * columns + 1, np.int64)
     block_edges = np.empty(rows * columns * max(len(edges), 1), np.int64)
     size = frame[2] * BLOCK_PIXELS
@@ -292,18 +196,7 @@ def _list_block_edges(edges: Floats, frame: Floats, rows: int, columns: int, rea
 
 
 def disc_path_costs(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Longs:
-    """Return the cost of the cheapest 8-connected path from every pixel to a goal pixel (Dijkstra's algorithm).
-
-    Parameters
-    ----------
-    tight : (rows, columns) bool, pixels that cost TIGHT_PIXEL_FACTOR times as much to enter.
-    goals : (rows, columns) bool, pixels where paths end.
-
-    Returns
-    -------
-    (rows, columns) int64; PIXEL_STEP_COST stands for the length of one pixel. 0 at goals; COST_NOT_REACHED everywhere
-    without a goal.
-    """
+    """Return the cost of the cheapest 8-connected path from every pixel to a goal pixel (Dijkstra's algorithm)."""
     price = np.pad(np.where(tight, TIGHT_PIXEL_FACTOR, 1), 1)
     costs = np.pad(np.where(goals, 0, COST_NOT_REACHED), 1, constant_values=-1)
     _relax_all(price.reshape(-1), costs.reshape(-1), tight.shape[1] + 2, new_queue(8 * tight.size))
@@ -312,17 +205,7 @@ def disc_path_costs(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) 
 
 @bare
 def _relax_all(price: Longs, costs: Longs, width: int, queue: Queue) -> None:
-    """Fill the costs of all pixels from those of cost 0. The rim of pixels around the raster, all -1, leads nowhere.
-
-    Parameters
-    ----------
-    price : (n,) int64, by flat index (row * width + column) into the raster padded by one pixel: how many times the
-        cost of a step it takes to enter a pixel.
-    costs : (n,) int64 by the same index, changed: 0 at goals and COST_NOT_REACHED elsewhere before, the least cost to a
-        goal after.
-    width : pixels in a padded row.
-    queue : an empty bucket queue; scratch.
-    """
+    """Fill the costs of all pixels from those of cost 0. The rim of pixels around the raster, all -1, leads nowhere."""
     for at in range(len(costs)):
         if costs[at] == 0:
             put(queue, 0, at)
@@ -345,19 +228,7 @@ def _relax_all(price: Longs, costs: Longs, width: int, queue: Queue) -> None:
 
 @compiled
 def cheapest_path_costs(price: Floats, goals: npt.NDArray[np.bool_]) -> Floats:
-    """Return the cost of the cheapest 8-connected path from every pixel to a goal pixel (Dijkstra's algorithm).
-
-    Parameters
-    ----------
-    price : (rows, columns) float64, not negative: cost of entering a pixel by its side; by its corner sqrt(2) times as
-        much.
-    goals : (rows, columns) bool, pixels where paths end.
-
-    Returns
-    -------
-    (rows, columns) float64 in the units of `price`; 0 at goals, 1e15 everywhere without a goal. Costs are summed from
-    the goal outward: a path pays for every pixel on it but the goal.
-    """
+    """Return the cost of the cheapest 8-connected path from every pixel to a goal pixel (Dijkstra's algorithm)."""
     rows, columns = price.shape
     costs = np.full(rows * columns, 1e15)
     heap = [(0.0, 0)]

@@ -154,10 +154,7 @@ Motion = Translate | Rotate
 
 
 def turned(points: Floats, degrees: float) -> Floats:
-    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns.
-
-    A new (n, 2) float64 array, in the unit of the points.
-    """
+    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns."""
     cosine, sine = direction(degrees)
     x, y = points[:, 0], points[:, 1]
     rotated = np.empty((len(points), 2))

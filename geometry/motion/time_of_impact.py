@@ -16,24 +16,16 @@ from geometry.motion.cell_clearance import squared_distance_to_edge
 
 
 class Surface(NamedTuple):
-    """The boundary that a moving body must not cross. Squares, table frame.
+    """The boundary that a moving body must not cross. Squares, table frame."""
 
-    Attributes
-    ----------
-    hull : (n, 7) edges of closed rings.
-    skin : (n, 7) the same rings drawn inward by the skin's depth, row for row. A motion is stopped by the skin, at the
-        edge above it.
-    chunks : (k, 6) rows first, stop, x0, y0, x1, y1: ranges of rows of `hull` and their bounding boxes, for the broad
-        phase.
-    edges : (m, 7) true edges of the obstacles. They equal `hull` but for points (see first_contact.Obstacles).
-    owner : (m,) index of the obstacle that each true edge belongs to.
-    """
-
-    hull: Floats
+    hull: Floats  # (n, 7) edges of closed rings
+    # (n, 7) the same rings drawn inward by the skin's depth, row for row. A motion is stopped by the skin, at the edge
+    # above it.
     skin: Floats
+    # (k, 6) rows first, stop, x0, y0, x1, y1: ranges of rows of `hull` and their bounding boxes, for the broad phase
     chunks: Floats
-    edges: Floats
-    owner: npt.NDArray[np.intp]
+    edges: Floats  # (m, 7) true edges of the obstacles. They equal `hull` but for points (see first_contact.Obstacles).
+    owner: npt.NDArray[np.intp]  # (m,) index of the obstacle that each true edge belongs to
 
 
 FirstContactHit = tuple[float, float, float, int, float, float]
@@ -54,16 +46,7 @@ FULL_TURN = 2 * math.pi  # radians
 
 @bare
 def push_impact_time(x: float, y: float, dx: float, dy: float, edges: Floats, j: int) -> float:
-    """Return when the point (x, y), pushed by (dx, dy), enters through edge j: 0 to 1, or NO_IMPACT (1e9).
-
-    Entering means crossing from the outer side to the inner one; 1 is the end of the push. All in squares, one frame.
-
-    Parameters
-    ----------
-    x, y : the point before the push.
-    dx, dy : the push.
-    edges, j : (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length; and the row that is asked for.
-    """
+    """Return when the point (x, y), pushed by (dx, dy), enters through edge j: 0 to 1, or NO_IMPACT (1e9)."""
     nx, ny = edges[j, 4], edges[j, 5]
     ahead = nx * dx + ny * dy
     if ahead >= 0.0:
@@ -87,18 +70,7 @@ def push_impact_time(x: float, y: float, dx: float, dy: float, edges: Floats, j:
 def turn_impact_angle(
     x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, j: int, until: float, cosine: float
 ) -> float:
-    """Return after how many radians the point (x, y), turning about (cx, cy), enters through edge j, or NO_IMPACT.
-
-    The angle is from 0 to 2 pi, whatever the sense of the turn. The circle cuts the edge's line twice and enters at one
-    of the two: no angle is needed to know where, and only its cosine to know whether it is soon enough.
-
-    Parameters
-    ----------
-    x, y, cx, cy : point and pivot, squares, in the frame of the edges.
-    sign : 1.0 for a counter-clockwise turn, -1.0 for a clockwise one.
-    edges, j : (n, 7) rows of edges, and the row that is asked for.
-    until, cosine : an angle in radians and its cosine. For an entry clearly after it NO_IMPACT is returned.
-    """
+    """Return after how many radians the point (x, y), turning about (cx, cy), enters through edge j, or NO_IMPACT."""
     nx, ny = edges[j, 4], edges[j, 5]
     hx, hy = cx - edges[j, 0], cy - edges[j, 1]
     h = nx * hx + ny * hy
@@ -125,23 +97,7 @@ def turn_impact_angle(
 
 @bare
 def first_push_contact(corners: Floats, body_edges: Floats, surface: Surface, dx: float, dy: float) -> FirstContactHit:
-    """Return the first contact of a body pushed by (dx, dy).
-
-    Of impacts at the same time the first found counts, by rows of the surface.
-
-    Parameters
-    ----------
-    corners : (k, 2) or more columns: x, y of the corners of the body, or of its points. At least one. Squares, table
-        frame.
-    body_edges : (m, 7) its edges; (0, 7) for points.
-    surface : what stands in the way: edges, their inward copy (skin) and the obstacle that each edge belongs to.
-    dx, dy : the push, squares.
-
-    Returns
-    -------
-    FirstContactHit : fraction of the push travelled, 0 to 1; x and y of the contact after the push, table frame; index
-        of the obstacle; unit normal away from the obstacle. (1.0, 0.0, 0.0, -1, 0.0, 0.0) when nothing stops it.
-    """
+    """Return the first contact of a body pushed by (dx, dy)."""
     hull, skin, chunks, edges, owner = surface
     time, kind, i, j = first_push_skin_hit(corners, body_edges, hull, skin, chunks, dx, dy)
     if kind == 0:
@@ -159,18 +115,7 @@ def first_push_contact(corners: Floats, body_edges: Floats, surface: Surface, dx
 def first_push_skin_hit(
     corners: Floats, body_edges: Floats, hull: Floats, skin: Floats, chunks: Floats, dx: float, dy: float
 ) -> SkinHit:
-    """Return the earliest impact of a body pushed by (dx, dy) on the skin, the inward copy of the obstacles' boundary.
-
-    Parameters
-    ----------
-    corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    hull, skin, chunks : as in Surface.
-
-    Returns
-    -------
-    SkinHit : time from 0 to 1 over the push (NO_IMPACT for none), kind of impact (0 for none), row in `corners` or
-        `body_edges`, row in `skin`.
-    """
+    """Return the earliest impact of a body pushed by (dx, dy) on the skin, their boundary moved inwards."""
     low_x, low_y, high_x, high_y = _bounding_box(corners)
     low_x += min(dx, 0.0)
     low_y += min(dy, 0.0)
@@ -206,14 +151,7 @@ def first_push_skin_hit(
 
 @bare
 def is_push_clear(points: Floats, edges: Floats, dx: float, dy: float) -> bool:
-    """Return whether all points, pushed by (dx, dy), keep further than MAX_SKIN_OFFSET from all edges.
-
-    Parameters
-    ----------
-    points : (n, 2) x, y before the push; squares, in the frame of the edges.
-    edges : (m, 7) true edges.
-    dx, dy : the push, squares.
-    """
+    """Return whether all points, pushed by (dx, dy), keep further than MAX_SKIN_OFFSET from all edges."""
     near2 = MAX_SKIN_OFFSET**2
     length2 = max(dx * dx + dy * dy, near2)
     for i in range(len(points)):
@@ -244,11 +182,8 @@ def is_push_clear(points: Floats, edges: Floats, dx: float, dy: float) -> bool:
 
 @bare
 def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
-    """Return (time, row) of the last entry through the true edges up to the time `until`; of equal times the first row.
-
-    The time is from 0 to `until` over the push (dx, dy) of the point (x, y); the row is one of `edges` (n, 7). Without
-    any entry: (0.0, row of the nearest edge ahead).
-    """
+    """Return (time, row) of the last entry through the true edges up to the time `until`."""
+    # Of equal times the first row.
     last, by = 0.0, -1
     x1, y1 = x + until * dx, y + until * dy
     low_x, low_y, high_x, high_y = (
@@ -274,12 +209,7 @@ def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, un
 def _nearest_ahead(
     x: float, y: float, dx: float, dy: float, centripetal_x: float, centripetal_y: float, edges: Floats
 ) -> int:
-    """Return the row of the edge nearest to (x, y) among those that face its motion; 0 if none does.
-
-    An edge of `edges` (n, 7) faces the velocity (dx, dy), or is parallel to it and faces the centripetal direction
-    (centripetal_x, centripetal_y), (0, 0) in a push. Only the directions of the two matter. Rows are x0, y0, x1, y1,
-    outward unit normal x and y, length. Squares, one frame.
-    """
+    """Return the row of the edge nearest to (x, y) among those that face its motion; 0 if none does."""
     best, at = math.inf, 0
     for k in range(len(edges)):
         nx, ny = edges[k, 4], edges[k, 5]
@@ -298,23 +228,7 @@ def _nearest_ahead(
 def first_turn_contact(
     corners: Floats, body_edges: Floats, surface: Surface, turn: float, cx: float, cy: float
 ) -> FirstContactHit:
-    """Return the first contact of a body turned by `turn` radians, counter-clockwise positive, about (cx, cy).
-
-    Of impacts at the same time the first found counts, by rows of the surface.
-
-    Parameters
-    ----------
-    turn, cx, cy : the turn in radians, and its pivot in squares, table frame.
-    corners : (k, 2) or more columns: x, y of the corners of the body, or of its points. At least one. Squares, table
-        frame.
-    body_edges : (m, 7) its edges; (0, 7) for points.
-    surface : what stands in the way: edges, their inward copy (skin) and the obstacle that each edge belongs to.
-
-    Returns
-    -------
-    FirstContactHit : fraction of the turn travelled, 0 to 1; x and y of the contact after the turn, table frame; index
-        of the obstacle; unit normal away from the obstacle. (1.0, 0.0, 0.0, -1, 0.0, 0.0) when nothing stops it.
-    """
+    """Return the first contact of a body turned by `turn` radians, counter-clockwise positive, about (cx, cy)."""
     hull, skin, chunks, edges, owner = surface
     sign = 1.0 if turn >= 0.0 else -1.0
     time, kind, i, j = first_turn_skin_hit(corners, body_edges, hull, skin, chunks, cx, cy, sign, abs(turn))
@@ -350,19 +264,7 @@ def first_turn_skin_hit(
     sign: float,
     limit: float,
 ) -> SkinHit:
-    """Return the earliest impact on the skin of a body that turns about (cx, cy) by at most `limit` radians.
-
-    Parameters
-    ----------
-    corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    hull, skin, chunks : as in Surface: the obstacles' boundary, its inward copy, and ranges of its rows.
-    sign : 1.0 for a counter-clockwise turn, -1.0 for a clockwise one.
-
-    Returns
-    -------
-    SkinHit : angle turned in radians, at least 0 whatever the sense (`limit` for none), kind of impact (0 for none),
-        row in `corners` or `body_edges`, row in `skin`.
-    """
+    """Return the earliest impact on the skin of a body that turns about (cx, cy) by at most `limit` radians."""
     low, high = _squared_annulus(corners, body_edges, cx, cy)
     low_x, low_y, high_x, high_y = _turn_bounds(corners, cx, cy, sign, limit)
     best, kind, at, edge = limit, 0, 0, 0
@@ -397,10 +299,7 @@ def first_turn_skin_hit(
 
 @bare
 def _squared_annulus(corners: Floats, body_edges: Floats, cx: float, cy: float) -> tuple[float, float]:
-    """Return the squares of the least and greatest distance of a body's boundary from (cx, cy), with a margin.
-
-    In squares squared. `corners` : rows that begin with x, y. `body_edges` : (m, 7).
-    """
+    """Return the squares of the least and greatest distance of a body's boundary from (cx, cy), with a margin."""
     low, high = 1e18, 0.0
     for i in range(len(corners)):
         away = (corners[i, 0] - cx) ** 2 + (corners[i, 1] - cy) ** 2
@@ -412,13 +311,7 @@ def _squared_annulus(corners: Floats, body_edges: Floats, cx: float, cy: float) 
 
 @bare
 def _turn_bounds(corners: Floats, cx: float, cy: float, sign: float, limit: float) -> tuple[float, float, float, float]:
-    """Return x0, y0, x1, y1, relative to (cx, cy) and with a margin, of the box that a turn keeps the corners in.
-
-    Parameters
-    ----------
-    corners : rows that begin with x, y; squares, table frame.
-    sign, limit : sense of the turn (1.0 counter-clockwise, -1.0 clockwise), and its size in radians.
-    """
+    """Return x0, y0, x1, y1, relative to (cx, cy) and with a margin, of the box that a turn keeps the corners in."""
     c, s = math.cos(limit), sign * math.sin(limit)
     low_x = low_y = high_x = high_y = 0.0
     for i in range(len(corners)):
@@ -447,11 +340,7 @@ def _turn_bounds(corners: Floats, cx: float, cy: float, sign: float, limit: floa
 
 @bare
 def _passes_direction(along: float, across: float, away: float, cosine: float, limit: float) -> bool:
-    """Return whether a turn by `limit` radians, positive whatever its sense, passes over a direction.
-
-    `along` and `across` are the direction's components along and, in the sense of the turn, across the direction where
-    the turn starts, times `away`. `cosine` is that of `limit`.
-    """
+    """Return whether a turn by `limit` radians, positive whatever its sense, passes over a direction."""
     if limit >= FULL_TURN:
         return True
     if limit <= math.pi:
@@ -463,12 +352,7 @@ def _passes_direction(along: float, across: float, away: float, cosine: float, l
 def _last_turn_entry(
     x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float
 ) -> tuple[float, int]:
-    """Return (angle, row) of the last entry through the true edges within `until` radians.
-
-    The angle, at least 0, is turned by the point (x, y) about (cx, cy) in the sense `sign` (1.0 counter-clockwise, -1.0
-    clockwise). The row is one of `edges` (n, 7); of equal angles the first. Without any entry: (0.0, row of the nearest
-    edge ahead).
-    """
+    """Return (angle, row) of the last entry through the true edges within `until` radians."""
     last, by = 0.0, -1
     cosine = math.cos(until) if until < FULL_TURN else 1.0
     for k in range(len(edges)):
@@ -489,10 +373,7 @@ def _rotate(x: float, y: float, angle: float) -> tuple[float, float]:
 
 @bare
 def _bounding_box(points: Floats) -> tuple[float, float, float, float]:
-    """Return x0, y0, x1, y1 of points with a margin: a corner may lie a skin's depth behind an edge.
-
-    In the unit and frame of the points. `points` : at least one row that begins with x, y.
-    """
+    """Return x0, y0, x1, y1 of points with a margin: a corner may lie a skin's depth behind an edge."""
     low_x = high_x = points[0, 0]
     low_y = high_y = points[0, 1]
     for i in range(1, len(points)):
@@ -510,19 +391,7 @@ def _bounding_box(points: Floats) -> tuple[float, float, float, float]:
 
 @compiled
 def push_fractions(corners: Floats, body_edges: Floats, surface: Surface, vectors: Floats) -> Floats:
-    """Return the fractions travelled, 0 to 1, for many translations of one body from where it stands.
-
-    Parameters
-    ----------
-    corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    surface : what stands in the way: edges, their inward copy and the obstacle that each belongs to, squares, table
-        frame.
-    vectors : (n, 2) dx, dy in squares.
-
-    Returns
-    -------
-    (n,) float64; 1 where the whole translation is free.
-    """
+    """Return the fractions travelled, 0 to 1, for many translations of one body from where it stands."""
     fractions = np.empty(len(vectors))
     for n in range(len(vectors)):
         dx, dy = vectors[n, 0], vectors[n, 1]
@@ -532,20 +401,7 @@ def push_fractions(corners: Floats, body_edges: Floats, surface: Surface, vector
 
 @compiled
 def turn_fractions(corners: Floats, body_edges: Floats, surface: Surface, turns: Floats, pivots: Floats) -> Floats:
-    """Return the fractions travelled, 0 to 1, for many turns of one body from where it stands.
-
-    Parameters
-    ----------
-    corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    surface : what stands in the way: edges, their inward copy and the obstacle that each belongs to, squares, table
-        frame.
-    turns : (n,) radians, counter-clockwise positive.
-    pivots : (n, 2) x, y, squares, table frame.
-
-    Returns
-    -------
-    (n,) float64; 1 where the whole turn is free.
-    """
+    """Return the fractions travelled, 0 to 1, for many turns of one body from where it stands."""
     fractions = np.empty(len(turns))
     for n in range(len(turns)):
         x, y = pivots[n, 0], pivots[n, 1]

@@ -10,22 +10,7 @@ MAX_COORDINATE = 1e7  # squares; derived: beyond it, rounding of coordinates exc
 
 
 def valid_polygons(shape: Any, what: str) -> Any:
-    """Return a geometry's polygons as one valid shapely geometry.
-
-    Parameters
-    ----------
-    shape : shapely geometry in squares, or None. Parts that are not polygons are left out.
-    what : name of the argument in the message of an error.
-
-    Returns
-    -------
-    The same object if it is None or a valid Polygon or MultiPolygon. Otherwise a Polygon or MultiPolygon in which rings
-    that cross each other are read by the even-odd rule.
-
-    Raises
-    ------
-    ValueError : a coordinate is not finite, or its magnitude is above MAX_COORDINATE.
-    """
+    """Return a geometry's polygons as one valid shapely geometry."""
     require_bounded(shapely.get_coordinates(shape), what)
     if shape is None or (shape.geom_type in ("Polygon", "MultiPolygon") and shapely.is_valid(shape)):
         return shape
@@ -35,17 +20,7 @@ def valid_polygons(shape: Any, what: str) -> Any:
 
 
 def require_bounded(numbers: Any, what: str) -> None:
-    """Raise ValueError unless all numbers are finite and of a magnitude of at most MAX_COORDINATE.
-
-    Parameters
-    ----------
-    numbers : a number, or an iterable (also nested, of equal lengths) of numbers.
-    what : name of the argument in the message of the error.
-
-    Raises
-    ------
-    ValueError : a number is nan, infinite or too large.
-    """
+    """Raise ValueError unless all numbers are finite and of a magnitude of at most MAX_COORDINATE."""
     values = np.asarray(list(numbers) if isinstance(numbers, Iterable) else numbers, dtype=float)
     if not (np.abs(values) <= MAX_COORDINATE).all():
         raise ValueError(f"{what} must be finite, and no coordinate beyond {MAX_COORDINATE:g}")

@@ -10,22 +10,8 @@ TOUCH_TOLERANCE = 1e-6  # squares; convention: what an area loses at its edge, s
 
 
 def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[int, int]]:
-    """Return the squares (column, row) between lines from wall to wall that are nearly as short as a passage is wide.
-
-    The floor is followed from the mouths of the passage in both directions, as long as such lines are at most `spare`
-    squares longer than the passage is wide. The set is empty when the passage is none of this floor.
-
-    Parameters
-    ----------
-    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
-    passage : the passage from which the floor is followed, found on these walls: its width and its two mouths count.
-    spare : how much longer than the passage is wide a line may be, in squares.
-
-    Returns
-    -------
-    set of (column, row)
-        The squares of which a part lies between two such lines.
-    """
+    """Return the squares (column, row) between lines from wall to wall nearly as short as a passage is wide."""
+    # The set is empty when the passage is none of this floor.
     limit = (passage.width + spare) ** 2
     edge_of = {edge: k for k, edge in enumerate(map(tuple, walls.corners[walls.edges].reshape(-1, 4).tolist()))}
     short_edges_of: dict[int, list[int]] = {}
@@ -46,20 +32,13 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
 
 
 def _edge_keys(mouth: Segment) -> list[tuple[int, ...]]:
-    """Return a mouth as the corners of an edge, in both directions: two tuples x, y, x, y of whole numbers.
-
-    The unit and the frame are those of the mouth: squares from the screen's south-west corner.
-    """
+    """Return a mouth as the corners of an edge, in both directions: two tuples x, y, x, y of whole numbers."""
     (a, b), (c, d) = mouth
     return [(int(a), int(b), int(c), int(d)), (int(c), int(d), int(a), int(b))]
 
 
 def _touched_squares(area: shapely.Geometry) -> set[tuple[int, int]]:
-    """Return the squares (column, row) of which a part lies in an area between corners of squares.
-
-    `area` is a shapely Polygon or MultiPolygon, in squares from the screen's south-west corner; of an empty one an
-    empty set is returned. Mere contact does not count.
-    """
+    """Return the squares (column, row) of which a part lies in an area between corners of squares."""
     if area.is_empty:
         return set()
     x0, y0, x1, y1 = (int(v) for v in area.bounds)

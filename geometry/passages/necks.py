@@ -93,55 +93,24 @@ def _halfway(one: XY, other: XY) -> XY:
 
 
 class _Mouth(NamedTuple):
-    """An end of a doorway.
+    """An end of a doorway."""
 
-    A doorway is made of necks of one width that hang together; a neck is a straight line from wall to wall that is
-    shorter than all beside it.
-
-    Attributes
-    ----------
-    edge : the number of the neck, an edge of the triangulation (`Walls.edges`).
-    side : the side of the neck on which the floor is wide, 0 or 1: an index in `Walls.sides`.
-    room : the squared width of that floor, in square squares.
-    floor : the numbers of the triangles of that floor (`Walls.triangles`).
-    """
-
-    edge: int
-    side: int
-    room: float
-    floor: tuple[int, ...]
+    edge: int  # the number of the neck, an edge of the triangulation (`Walls.edges`).
+    side: int  # the side of the neck on which the floor is wide, 0 or 1: an index in `Walls.sides`.
+    room: float  # the squared width of that floor, in square squares
+    floor: tuple[int, ...]  # the numbers of the triangles of that floor (`Walls.triangles`).
 
 
 class _Doorway(NamedTuple):
-    """Two mouths, and the squares (column, row) whose centres lie between them.
+    """Two mouths, and the squares (column, row) whose centres lie between them."""
 
-    Attributes
-    ----------
-    one, two : the mouths, in no particular order.
-    between : the squares (column, row), by row.
-    """
-
-    one: _Mouth
+    one: _Mouth  # the mouths, in no particular order
     two: _Mouth
-    between: tuple[tuple[int, int], ...]
+    between: tuple[tuple[int, int], ...]  # the squares (column, row), by row
 
 
 def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
-    """Return all passages, ordered by place: row (from the south), then column; an empty list when there are none.
-
-    Each holds its width, the greatest clearance of the floor on either side (`sides`), the lines from wall to wall
-    where it opens (`mouths`), a free square's centre beyond each (`gates`), and the squares (column, row) `between`
-    them; all in squares from the screen's south-west corner.
-
-    A passage is a neck, a straight line from wall to wall that is shorter than all beside it, or several equally narrow
-    necks with no wide floor between. Only those are returned with wide floor on both sides.
-
-    Parameters
-    ----------
-    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
-    pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1. The default gives
-        doors.
-    """
+    """Return all passages, ordered by place: row (from the south), then column; an empty list when there are none."""
     floor = _Floor(walls)
     found: list[_Doorway] = []
     for edges in _necks_by_width(walls):
@@ -158,23 +127,10 @@ def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
 
 
 class _Floor:
-    """The parts of the floor between necks that are still closed: a union-find over triangles.
-
-    The representative of a part is one of its triangles. Widths are squared, in square squares.
-
-    Attributes
-    ----------
-    members : by triangle; at a representative, the numbers of the triangles of its part, else an empty list.
-    room : by triangle; at a representative, the squared width of the widest floor in its part, else of no meaning.
-    widest : the squared width of the widest part of all.
-    """
+    """The parts of the floor between necks that are still closed: a union-find over triangles."""
 
     def __init__(self, walls: Walls) -> None:
-        """Join the triangles of `walls` over all edges that are no necks.
-
-        `walls` is the floor as triangles between the corners of its walls. A neck is a straight line from wall to wall
-        that is shorter than all beside it.
-        """
+        """Join the triangles of `walls` over all edges that are no necks."""
         number = len(walls.triangles)
         self._parent = list(range(number))
         self.members = [[k] for k in range(number)]
@@ -205,10 +161,7 @@ class _Floor:
 
 
 def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
-    """Yield the necks in groups of equal width, widest first; each is a list of numbers of edges of `walls`.
-
-    A neck is a straight line from wall to wall that is shorter than all beside it.
-    """
+    """Yield the necks in groups of equal width, widest first; each is a list of numbers of edges of `walls`."""
     necks = np.flatnonzero(walls.neck)
     order = necks[np.argsort(-walls.length[necks], kind="stable")].tolist()
     for _, group in groupby(order, key=lambda edge: int(walls.length[edge])):
@@ -216,20 +169,7 @@ def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
 
 
 def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> Iterator[tuple[list[_Mouth], set[int]]]:
-    """Yield the necks of one width that hang together through narrower floor: mouths, and parts of that floor.
-
-    Each pair is (mouths, numbers of the parts); the order of pairs and of mouths has no meaning. Clusters with fewer
-    than two mouths are left out. A mouth is a neck seen from floor that is wide; a part of the narrower floor is given
-    by its representative in `floor`.
-
-    Parameters
-    ----------
-    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
-    floor : its parts (sets of triangles, with the squared width of each), while these necks and all narrower ones are
-        still closed.
-    edges : numbers of the necks, all of one width.
-    least : the squared width from which on floor counts as wide, in square squares.
-    """
+    """Yield the necks of one width that hang together through narrower floor: mouths, and parts of that floor."""
     ends = {edge: [floor.of(triangle) for triangle in walls.sides[edge].tolist()] for edge in edges}
     meeting: dict[int, list[int]] = defaultdict(list)
     for edge in edges:
@@ -256,18 +196,7 @@ def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> It
 
 
 def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int], ...]) -> Iterator[_Doorway]:
-    """Yield the doorway of two mouths; of more mouths, a doorway of no depth in each, in the order of `mouths`.
-
-    A doorway holds two mouths and the squares (column, row) between; a mouth is a neck (a straight line from wall to
-    wall that is shorter than all beside it), with the side on which the floor is wide, and that floor.
-    Where three or more meet, the floor between them is floor like any other.
-
-    Parameters
-    ----------
-    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
-    mouths : two or more, of necks of one width that hang together.
-    between : the squares (column, row) whose centres lie on the narrower floor between them.
-    """
+    """Yield the doorway of two mouths; of more mouths, a doorway of no depth in each, in the order of `mouths`."""
     if len(mouths) == 2:
         one, two = mouths
         yield _Doorway(one, two, between if one.edge != two.edge else _squares_on(walls, one.edge))
@@ -279,17 +208,7 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
 
 
 def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
-    """Return the passage of a doorway, with the side whose gate is further south, then west, as the first.
-
-    Its width, the clearances on both sides, mouths, gates (centres of free squares beyond the mouths) and the squares
-    between are in squares from the screen's south-west corner.
-
-    Parameters
-    ----------
-    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
-    doorway : two mouths, and the squares between them.
-    taken : the squares (column, row) between the mouths of any doorway: no gate lies there.
-    """
+    """Return the passage of a doorway, with the side whose gate is further south, then west, as the first."""
     gates = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
     (here, one), (there, two) = sorted(gates, key=lambda way: way[0][::-1])
     return Passage(
@@ -302,11 +221,7 @@ def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Pa
 
 
 def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
-    """Return the ends of a mouth, first that on the left, then that on the right of a robot that enters by it.
-
-    It enters from the wide floor. Each end is (x, y) in squares from the screen's south-west corner. `walls` is the
-    triangulated floor, of which the mouth is an edge.
-    """
+    """Return the ends of a mouth, first that on the left, then that on the right of a robot that enters by it."""
     p, q = walls.corners[walls.edges[mouth.edge]].tolist()
     x, y = walls.opposite(mouth.edge, mouth.side).tolist()
     leftward = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0
@@ -315,17 +230,7 @@ def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
 
 
 def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
-    """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to.
-
-    It is (x, y) in squares from the screen's south-west corner. When no square's centre lies there, that of the square
-    that begins just beyond the midpoint is returned.
-
-    Parameters
-    ----------
-    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
-    mouth : a neck, the side on which it opens to wide floor, and that floor.
-    taken : squares (column, row) that are no gates: those between the mouths of any doorway.
-    """
+    """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to."""
     (ax, ay), (bx, by) = _mouth_ends(walls, mouth)
     x, y = (ax + bx) / 2, (ay + by) / 2
     mask, west, south = _centre_mask(walls.corners[walls.triangles[list(mouth.floor)]])
@@ -343,10 +248,7 @@ def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
 
 
 def _squares_of(walls: Walls, triangles: Iterable[int]) -> tuple[tuple[int, int], ...]:
-    """Return the squares (column, row) whose centres lie in some triangles, or on their edges; by row.
-
-    The triangles are given by their numbers in `walls`.
-    """
+    """Return the squares (column, row) whose centres lie in some triangles, or on their edges; by row."""
     return _centres(walls.corners[walls.triangles[list(triangles)]])
 
 
@@ -356,25 +258,15 @@ def _squares_on(walls: Walls, edge: int) -> tuple[tuple[int, int], ...]:
 
 
 def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
-    """Return the squares (column, row) whose centres lie in triangles, or on their edges; by row.
-
-    `triangles` is (n, 3, 2) int64: the corners (x, y) of each, in squares. Empty without triangles.
-    """
+    """Return the squares (column, row) whose centres lie in triangles, or on their edges; by row."""
+    # Empty without triangles.
     mask, west, south = _centre_mask(triangles)
     rows, columns = np.nonzero(mask)
     return tuple(zip((columns + west).tolist(), (rows + south).tolist(), strict=True))
 
 
 def _centre_mask(triangles: Longs) -> tuple[Bools, int, int]:
-    """Return a mask of the squares whose centres lie in triangles, or on their edges, and its corner.
-
-    The mask is (rows, columns) bool, row 0 in the south; its square [0, 0] is that in column `west` and row `south`,
-    which are returned after it. Without triangles it is empty, and its corner (0, 0).
-
-    Parameters
-    ----------
-    triangles : (n, 3, 2) int64, the corners (x, y) of each, in squares.
-    """
+    """Return a mask of the squares whose centres lie in triangles, or on their edges, and its corner."""
     if not len(triangles):
         return np.zeros((0, 0), np.bool_), 0, 0
     (west, south), (east, north) = triangles.min(axis=(0, 1)).tolist(), triangles.max(axis=(0, 1)).tolist()
@@ -385,14 +277,7 @@ def _centre_mask(triangles: Longs) -> tuple[Bools, int, int]:
 
 @compiled
 def mark_centres(triangles: Longs, mask: Bools) -> None:
-    """Set `mask` at the squares whose centres lie in triangles, or on their edges.
-
-    Parameters
-    ----------
-    triangles : (n, 3, 2) int64, the corners (x, y) of each in half squares, even numbers, from the south-west corner of
-        the mask.
-    mask : (rows, columns) bool, changed; row 0 in the south. It must cover the triangles.
-    """
+    """Set `mask` at the squares whose centres lie in triangles, or on their edges."""
     for n in range(triangles.shape[0]):
         (ax, ay), (bx, by), (cx, cy) = triangles[n, 0], triangles[n, 1], triangles[n, 2]
         for row in range(min(ay, by, cy) // 2, max(ay, by, cy) // 2):

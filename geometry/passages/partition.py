@@ -10,18 +10,7 @@ from geometry.passages.necks import Passage
 
 
 def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
-    """Return the number of each square's part, from 1 in the order of the parts' first squares.
-
-    The numbers are (rows, columns) int32, row 0 in the south; the first square of a part is the westernmost of its
-    southernmost row. It is 0 on blocked squares, on squares whose centres lie on a mouth, and on the floor between two
-    mouths of a passage with all that can be reached from there alone, unless another passage leads there.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, row 0 in the south.
-    passages : the passages along whose mouths (straight lines from wall to wall) the floor is cut, in the frame of
-        `free`; they may reach beyond it.
-    """
+    """Return the number of each square's part, from 1 in the order of the parts' first squares."""
     some = list(passages)
     label = cut_floor(np.pad(free, 1), some)[0]
     rows, columns = free.shape  # passages of a larger floor may reach beyond
@@ -39,21 +28,7 @@ def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
 
 
 def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]:
-    """Return the pieces of a framed floor that is cut along all mouths of passages, and the steps that are cut.
-
-    Parameters
-    ----------
-    floor : (rows + 2, columns + 2) bool, with a frame that is not floor.
-    passages : the passages along whose mouths (straight lines from wall to wall) the floor is cut, in squares from the
-        south-west corner of the floor without its frame; may be empty.
-
-    Returns
-    -------
-    label : (rows + 2, columns + 2) int32, the number of the piece, from 1 in the order of their first cells; 0 off the
-        floor and on squares whose centres lie on a mouth.
-    closed : (2, rows + 2, columns + 2) bool, True where the step from each cell to the east (0) or to the north (1) is
-        cut. Two cells have one label exactly when steps that are not closed lead from one to the other.
-    """
+    """Return the pieces of a framed floor that is cut along all mouths of passages, and the steps that are cut."""
     closed, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
     for mouth in dict.fromkeys(mouth for passage in passages for mouth in passage.mouths):
         close_crossed_steps(closed, np.array(mouth))
@@ -68,13 +43,7 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
 
 
 def block_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) -> None:
-    """Block the squares of a framed floor whose centres lie on a line a-b between corners of squares.
-
-    Parameters
-    ----------
-    floor : (rows + 2, columns + 2) bool; set False at these squares.
-    a, b : (x, y) in squares, whole numbers, from the south-west corner of the floor without its frame.
-    """
+    """Block the squares of a framed floor whose centres lie on a line a-b between corners of squares."""
     (ax, ay), (bx, by) = a, b
     west, south, east, north = (int(v) for v in (min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
     rows, columns = np.mgrid[south:north, west:east]
@@ -84,14 +53,7 @@ def block_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) 
 
 @compiled
 def close_crossed_steps(closed: Bools, line: Floats) -> None:
-    """Close the steps between centres of squares that a line crosses an odd number of times.
-
-    Parameters
-    ----------
-    closed : (2, rows + 2, columns + 2) bool, steps from each cell to the east (0) and to the north (1); set True at
-        these steps, else unchanged.
-    line : (n, 2) points (x, y) of a polyline, in squares from the south-west corner of the floor without its frame.
-    """
+    """Close the steps between centres of squares that a line crosses an odd number of times."""
     low_x = high_x = line[0, 0]
     low_y = high_y = line[0, 1]
     for k in range(1, len(line)):
@@ -115,37 +77,20 @@ def close_crossed_steps(closed: Bools, line: Floats) -> None:
 
 @compiled
 def segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
-    """Return whether the segments a-b and p-q cross; an end that lies on the other's line counts as right of it.
-
-    The numbers are x and y of the four ends (`ax`, `ay` those of a), in one unit. Segments on one line do not cross.
-    """
+    """Return whether the segments a-b and p-q cross; an end that lies on the other's line counts as right of it."""
     apart = (orientation(ax, ay, bx, by, px, py) > 0) != (orientation(ax, ay, bx, by, qx, qy) > 0)
     return apart and (orientation(px, py, qx, qy, ax, ay) > 0) != (orientation(px, py, qx, qy, bx, by) > 0)
 
 
 @compiled
 def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
-    """Return a positive number when c lies left of the ray from a through b, negative when right, 0 on its line.
-
-    It is twice the signed area of the triangle a b c, of which x and y are given in one unit.
-    """
+    """Return a positive number when c lies left of the ray from a through b, negative when right, 0 on its line."""
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
 @bare
 def number_parts(free: Bools, closed: Bools, label: Labels, stack: Ints) -> int:
-    """Write the number of each padded free cell's part to `label`, from 1, and return how many parts there are.
-
-    Numbers follow the parts' first cells, row by row from the south-west. Parts are connected over edges.
-
-    Parameters
-    ----------
-    free : (rows + 2, columns + 2) bool, False on the frame.
-    closed : (2, rows + 2, columns + 2) bool, the steps that are cut: from each cell to the east (0) and to the north
-        (1).
-    label : (rows + 2, columns + 2) int32, 0 at first; stays 0 on cells that are not free.
-    stack : (cells,) int32, scratch.
-    """
+    """Write the number of each padded free cell's part to `label`, from 1, and return how many parts there are."""
     width = free.shape[1]
     open_cells, labels = free.reshape(-1), label.reshape(-1)
     east, north = closed[0].reshape(-1), closed[1].reshape(-1)

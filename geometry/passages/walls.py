@@ -18,41 +18,23 @@ from geometry.kernels.arrays import Bools, Floats, Longs
 
 
 class Walls(NamedTuple):
-    """The floor as a triangulation of the corners of its walls.
+    """The floor as a triangulation of the corners of its walls."""
 
-    Corners, triangles and edges are numbered from 0: their numbers are their indices in these arrays.
-
-    Attributes
-    ----------
-    corners : (n, 2) int64, the corners of blocked squares that touch free ones, (x, y) in squares from the screen's
-        south-west corner.
-    triangles : (m, 3) int64, numbers of corners; together they are the free squares.
-    room : (m,) float64, the squared width of the floor about each triangle (the diameter of the largest circle there),
-        in square squares: 0 where that is greatest elsewhere.
-    edges : (k, 2) int64, numbers of the corners at the ends of each edge that two triangles share, the lower first.
-    sides : (k, 2) int64, the numbers of these two triangles.
-    length : (k,) int64, the squared length of each edge, in square squares.
-    neck : (k,) bool, whether all lines from wall to wall beside the edge are longer.
-    """
-
+    # (n, 2) int64, the corners of blocked squares that touch free ones, (x, y) in squares from the screen's south-west
+    # corner
     corners: Longs
-    triangles: Longs
+    triangles: Longs  # (m, 3) int64, numbers of corners; together they are the free squares
+    # (m,) float64, the squared width of the floor about each triangle (the diameter of the largest circle there), in
+    # square squares: 0 where that is greatest elsewhere
     room: Floats
+    # (k, 2) int64, numbers of the corners at the ends of each edge that two triangles share, the lower first
     edges: Longs
-    sides: Longs
-    length: Longs
-    neck: Bools
+    sides: Longs  # (k, 2) int64, the numbers of these two triangles
+    length: Longs  # (k,) int64, the squared length of each edge, in square squares
+    neck: Bools  # (k,) bool, whether all lines from wall to wall beside the edge are longer
 
     def opposite(self, edge: int, side: int) -> Longs:
-        """Return the corner of one of the two triangles of an edge that is not on the edge.
-
-        It is (2,) int64, (x, y) in squares from the screen's south-west corner.
-
-        Parameters
-        ----------
-        edge : the number of the edge.
-        side : 0 or 1: which of its triangles.
-        """
+        """Return the corner of one of the two triangles of an edge that is not on the edge."""
         ends = self.edges[edge]
         (other,) = (c for c in self.triangles[self.sides[edge, side]].tolist() if c not in ends)
         point: Longs = self.corners[other]
@@ -60,16 +42,7 @@ class Walls(NamedTuple):
 
 
 def find_walls(free: Bools) -> Walls:
-    """Return the triangulated free squares of a screen; everything outside it is blocked.
-
-    It holds the corners of walls, (x, y) in squares from the screen's south-west corner, the triangles (numbers of
-    corners) with the squared width of the floor about each, and the edges that two triangles share: their ends, these
-    triangles, squared lengths (square squares), and whether each is a neck, shorter than all lines beside it.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, row 0 in the south; at least one True.
-    """
+    """Return the triangulated free squares of a screen; everything outside it is blocked."""
     floor = np.pad(free, 1)
     corners, triangles = _triangulate(floor)
     middle = corners[triangles].sum(axis=1) // 3 + 1  # about the middle of a free triangle all squares are free
@@ -82,17 +55,7 @@ def find_walls(free: Bools) -> Walls:
 
 
 def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
-    """Return the corners of walls and the triangles between them, those over blocked squares included.
-
-    Parameters
-    ----------
-    floor : (rows + 2, columns + 2) bool, the free squares in a blocked frame.
-
-    Returns
-    -------
-    corners : (n, 2) int64, (x, y) in squares from the south-west corner of the squares without the frame, by row.
-    triangles : (m, 3) int64, numbers of corners, in no particular order.
-    """
+    """Return the corners of walls and the triangles between them, those over blocked squares included."""
     around = [floor[:-1, :-1], floor[:-1, 1:], floor[1:, :-1], floor[1:, 1:]]
     on_wall = np.logical_or.reduce(around) & ~np.logical_and.reduce(around)
     corners = np.argwhere(on_wall)[:, ::-1].astype(np.int64)
@@ -104,12 +67,7 @@ def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
 
 
 def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
-    """Return the edges that two triangles share: their ends, these triangles, and the corners opposite.
-
-    `triangles` are (m, 3) numbers of corners. The three arrays returned are (k, 2) int64: the two corners at each
-    edge's ends, ascending; the numbers of its two triangles, ascending; and the third corners of these, in the same
-    order. Edges are sorted by their two corners.
-    """
+    """Return the edges that two triangles share: their ends, these triangles, and the corners opposite."""
     ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     owner, tip = np.tile(np.arange(len(triangles)), 3), np.concatenate([triangles[:, k] for k in (2, 0, 1)])
     order = np.lexsort((owner, ends[:, 1], ends[:, 0]))
@@ -120,17 +78,9 @@ def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
 
 
 def _widths(points: Longs, floor: Bools) -> Floats:
-    """Return the squared width of the floor about triangles, (m,) float64, in square squares; 0 about obtuse ones.
-
-    They are squared diameters of the largest free circles about the centres of the circles through the triangles'
-    corners. No corner of a wall lies in the circle through a triangle's corners, so only the side of a wall may come
-    nearer to its centre: straight to the west, east, south or north of it.
-
-    Parameters
-    ----------
-    points : (m, 3, 2) int64, the corners (x, y) of each triangle, in squares from the south-west corner.
-    floor : (rows + 2, columns + 2) bool, the free squares in a blocked frame.
-    """
+    """Return the squared width of the floor about triangles, (m,) float64, in square squares; 0 about obtuse ones."""
+    # No corner of a wall lies in the circle through a triangle's corners, so only the side of a wall may come nearer to
+    # its centre: straight to the west, east, south or north of it.
     a, b, c = (points[:, k] for k in range(3))
     u, v, w = b - a, c - b, a - c
     sharp = np.flatnonzero((_dot(u, -w) >= 0) & (_dot(v, -u) >= 0) & (_dot(w, -v) >= 0))
@@ -152,11 +102,7 @@ def _widths(points: Longs, floor: Bools) -> Floats:
 
 
 def _free_runs(floor: Bools) -> tuple[Longs, Longs]:
-    """Return where the run of free squares begins and ends in which a square lies, along its row.
-
-    Both are (rows, columns) int64, columns: of the first free square, and of the first blocked one after it. They have
-    no meaning at blocked squares. `floor` is (rows, columns) bool, blocked at its edge.
-    """
+    """Return where the run of free squares begins and ends in which a square lies, along its row."""
     columns = np.broadcast_to(np.arange(floor.shape[1]), floor.shape)
     begin = np.maximum.accumulate(np.where(floor, 0, columns + 1), axis=1)
     end = np.minimum.accumulate(np.where(floor, floor.shape[1], columns)[:, ::-1], axis=1)[:, ::-1]

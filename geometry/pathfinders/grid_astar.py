@@ -16,23 +16,7 @@ STEPS = (*STRAIGHT_STEPS, *((dx, dy, DIAGONAL) for dx, dy in ((1, 1), (-1, 1), (
 
 
 def grid_path(free: Bools, start: tuple[float, float], goal: tuple[float, float]) -> Floats | None:
-    """Return the shortest path over squares from start to goal; None when there is none.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where a point may be; row 0 in the south.
-    start, goal : (x, y) in squares from the south-west corner of `free`, in free squares.
-
-    Returns
-    -------
-    (n, 2) float64 or None
-        The points (x, y) of the path, in squares: start, centres of squares, goal.
-
-    Raises
-    ------
-    ValueError
-        When start or goal lies in a blocked square.
-    """
+    """Return the shortest path over squares from start to goal; None when there is none."""
     first, last = (int(start[0]), int(start[1])), (int(goal[0]), int(goal[1]))
     padded = np.pad(free, 1).tolist()
     if not (padded[first[1] + 1][first[0] + 1] and padded[last[1] + 1][last[0] + 1]):
@@ -58,10 +42,7 @@ def grid_path(free: Bools, start: tuple[float, float], goal: tuple[float, float]
 
 
 def octile_distance(a: Square, b: Square) -> float:
-    """Return the length of the shortest path between two squares on an empty grid, in squares.
-
-    Steps lead to the eight neighbours, a diagonal one is the root of 2 long. The squares `a` and `b` are (column, row).
-    """
+    """Return the length of the shortest path between two squares on an empty grid, in squares."""
     dx, dy = abs(a[0] - b[0]), abs(a[1] - b[1])
     return max(dx, dy) + (DIAGONAL - 1.0) * min(dx, dy)
 
@@ -69,16 +50,7 @@ def octile_distance(a: Square, b: Square) -> float:
 def points_of_path(
     came_from: dict[Square, Square], square: Square, start: tuple[float, float], goal: tuple[float, float]
 ) -> Floats:
-    """Return the path to a square: start, centres of squares, goal, (n, 2) float64 of (x, y) in squares.
-
-    The centres of the first and of the last square are among them, unless start or goal lies there.
-
-    Parameters
-    ----------
-    came_from : by square (column, row), the square before it on its path; the first square is missing.
-    square : the last square of the path, (column, row).
-    start, goal : (x, y) in squares from the screen's south-west corner.
-    """
+    """Return the path to a square: start, centres of squares, goal, (n, 2) float64 of (x, y) in squares."""
     squares = [square]
     while square in came_from:
         square = came_from[square]

@@ -26,63 +26,38 @@ NO_PATH = -1  # returned when there is no path
 
 
 class Nodes(NamedTuple):
-    """Search nodes, in the order in which they were made, and the shortest path known to each corner.
+    """Search nodes, in the order in which they were made, and the shortest path known to each corner."""
 
-    A corner is an end of a portal, where a path may bend: 2 portal for a portal's west end, 2 portal + 1 for its east
-    end; -1 is the start. Signed portals are counted from 1, negative when crossed southwards (see strips.py).
-
-    Attributes
-    ----------
-    span : (room, 3) west and east end of the interval (x, in squares from the screen's south-west corner), and the
-        length of the path to the root, in squares; a goal node has east < west, and the length of the whole path.
-    link : (room, 3) the signed portal entered, from 1, or 0 for a bend between two portals of one strip; the root,
-        which is the corner that sees the interval; the node before, -1 for none.
-    key : (room,) heap: the least length of a path through the node, in squares.
-    heap : (room,) heap: the number of the node.
-    best : (2 portals,) the length of the shortest path known to a corner, in squares.
-    seen : (2 portals,) the stamp of the search in which `best` was written; other entries do not count.
-    counters : (3,) the number of nodes, the size of the heap, the stamp of the present search.
-    enter : (strips,) the stamp on dead ends that may be entered because the goal lies in them.
-    """
-
+    # (room, 3) west and east end of the interval (x, in squares from the screen's south-west corner), and the length of
+    # the path to the root, in squares; a goal node has east < west, and the length of the whole path
     span: Floats
+    # (room, 3) the signed portal entered, from 1, or 0 for a bend between two portals of one strip; the root, which is
+    # the corner that sees the interval; the node before, -1 for none
     link: Ints
-    key: Floats
-    heap: Ints
-    best: Floats
-    seen: Ints
-    counters: Ints
-    enter: Ints
+    key: Floats  # (room,) heap: the least length of a path through the node, in squares
+    heap: Ints  # (room,) heap: the number of the node
+    best: Floats  # (2 portals,) the length of the shortest path known to a corner, in squares
+    seen: Ints  # (2 portals,) the stamp of the search in which `best` was written; other entries do not count
+    counters: Ints  # (3,) the number of nodes, the size of the heap, the stamp of the present search
+    enter: Ints  # (strips,) the stamp on dead ends that may be entered because the goal lies in them
 
 
 class PolyanyaSearch(NamedTuple):
-    """All scratch of a search, and its result.
+    """All scratch of a search, and its result."""
 
-    Attributes
-    ----------
-    nodes : the search nodes.
-    word : (room,) the reduced word of the path found: signed portals (index plus 1, negative when crossed southwards),
-        of which the first `sizes[0]` count.
-    funnel : scratch for pulling the path tight.
-    line : (n, 2) the corners (x, y) of the path found, in squares from the screen's south-west corner; the first
-        `sizes[1]` count.
-    sizes : (2,) the size of the word, or NO_PATH or SEARCH_OVERFLOW; the number of corners.
-    """
-
-    nodes: Nodes
+    nodes: Nodes  # the search nodes
+    # (room,) the reduced word of the path found: signed portals (index plus 1, negative when crossed southwards), of
+    # which the first `sizes[0]` count
     word: Ints
-    funnel: Funnel
+    funnel: Funnel  # scratch for pulling the path tight
+    # (n, 2) the corners (x, y) of the path found, in squares from the screen's south-west corner; the first `sizes[1]`
+    # count
     line: Floats
-    sizes: Ints
+    sizes: Ints  # (2,) the size of the word, or NO_PATH or SEARCH_OVERFLOW; the number of corners
 
 
 def new_polyanya_search(room: int, strips: Strips) -> PolyanyaSearch:
-    """Return scratch for at most `room` nodes on those strips; words of up to `room` // 8 symbols have room.
-
-    It holds the search nodes, and room for the result of a search: its word (signed portals), the corners of its path
-    (squares), and their numbers. A search node is an interval of a portal that is visible from the last corner of a
-    path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-    """
+    """Return scratch for at most `room` nodes on those strips; words of up to `room` // 8 symbols have room."""
     portals = len(strips.left)
     nodes = Nodes(
         np.empty((room, 3)),
@@ -104,23 +79,7 @@ def new_polyanya_search(room: int, strips: Strips) -> PolyanyaSearch:
 def shortest_line(
     strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: Ints, funnel: Funnel, line: Floats, sizes: Ints
 ) -> float:
-    """Return the length of the shortest path of all, in squares; infinite when none is found.
-
-    The path's corners are left in `line`. The numbers of its symbols (signed portals: index plus 1, negative when
-    crossed southwards) and corners are written to `sizes`; the first is NO_PATH or SEARCH_OVERFLOW when none is found.
-    No path as long as `limit` or longer is found, unless start and goal lie in one strip. A word is reduced when no
-    symbol stands next to its negative.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
-    limit : in squares; infinite for none.
-    nodes, funnel : scratch; changed.
-    word : written: the reduced word of the path, of which the first sizes[0] symbols count.
-    line : (n, 2) written: the corners (x, y) of the path in squares, of which the first sizes[1] count.
-    sizes : (2,) written: the number of symbols (or NO_PATH, -1, or SEARCH_OVERFLOW, -2), and the number of corners.
-    """
+    """Return the length of the shortest path of all, in squares; infinite when none is found."""
     size = shortest_word(strips, ends, limit, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > funnel.x.shape[0]:
         size = SEARCH_OVERFLOW
@@ -133,19 +92,7 @@ def shortest_line(
 
 @bare
 def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: Ints) -> int:
-    """Write the reduced word of the shortest path and return its size, or NO_PATH, or SEARCH_OVERFLOW without room.
-
-    The size is 0 when start and goal lie in one strip. A word is reduced when no symbol stands next to its negative.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
-    limit : in squares; paths as long or longer are not found.
-    nodes : scratch: intervals of portals, each visible from the last corner of a path; changed.
-    word : written from index 0 on: signed portals, negative when crossed southwards. A size equal to its length says
-        that there was not enough room.
-    """
+    """Write the reduced word of the shortest path and return its size, or NO_PATH, or SEARCH_OVERFLOW without room."""
     rows, lows, up, down, line = strips.row, strips.low, strips.up, strips.down, strips.line
     left, right, lower, upper = strips.left, strips.right, strips.lower, strips.upper
     exits, (span, link, key, heap, best, seen, counters, enter) = strips.exit, nodes
@@ -181,19 +128,7 @@ def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: 
 
 @bare
 def mark_dead_ends_to_goal(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, stamp: int) -> None:
-    """Mark with the stamp the strips of the dead end in which the goal's strip lies, if it lies in one.
-
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
-    strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    exits : (strips,) the signed portal by which every path out of a dead-end strip leaves it, 0 for other strips.
-    lower, upper : (portals,) the strips below and above each portal.
-    goal : the number of the goal's strip.
-    enter : (strips,) written: the stamp on strips that may be entered; other entries stay.
-    stamp : the number of the present search.
-    """
+    """Mark with the stamp the strips of the dead end in which the goal's strip lies, if it lies in one."""
     strip = goal
     while exits[strip] != 0:
         enter[strip] = stamp
@@ -213,21 +148,7 @@ def add_start_nodes(
     link: Ints,
     counters: Ints,
 ) -> None:
-    """Add a node for every portal of the start's strip.
-
-    Where the start lies on the strip's southern edge beside a portal there, the portal's nearer end is the root. A node
-    is an interval of a portal that is visible from its root, the last corner of a path. A portal is the overlap of two
-    strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    up, down, left, right, line : attributes of `Strips`: the first portal of each strip upwards and downwards; first
-        and last column and lower row of each portal.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    strip : the number of the start's strip.
-    span, link, counters : attributes of `Nodes`: interval and length of each node, its portal, root and parent, numbers
-        of nodes; extended.
-    """
+    """Add a node for every portal of the start's strip."""
     for portal in range(up[strip], up[strip + 1]):
         add_node(span, link, counters, 1.0 * left[portal], right[portal] + 1.0, 0.0, portal + 1, -1, -1)
     for portal in range(down[strip], down[strip + 1]):
@@ -259,23 +180,7 @@ def add_successors(
     node: int,
     strip: int,
 ) -> None:
-    """Add the nodes that follow a node which enters a strip: what its root sees of the other portals, and bends.
-
-    Dead ends are left out, but for those marked in `enter`. A node is an interval of a portal that is visible from its
-    root, the last corner of a path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    up, down, left, right, line, lower, upper, exits : attributes of `Strips`: the first portal of each strip upwards
-        and downwards; first and last column, lower row, lower and upper strip of each portal; the way out of each dead
-        end (`exit`).
-    enter : (strips,) the stamp on dead ends that may be entered.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    span, link, best, seen, counters : attributes of `Nodes`: interval and length of each node, its portal, root and
-        parent, the shortest path to each corner, numbers of nodes; extended and changed.
-    node : the number of the node.
-    strip : the number of the strip that it enters.
-    """
+    """Add the nodes that follow a node which enters a strip: what its root sees of the other portals, and bends."""
     west, east, done = span[node, SPAN_WEST], span[node, SPAN_EAST], span[node, SPAN_LENGTH]
     symbol, root = link[node, LINK_PORTAL], link[node, LINK_ROOT]
     portal, upward, stamp = abs(symbol) - 1, symbol > 0, counters[STAMP_INDEX]
@@ -330,16 +235,8 @@ def add_successors(
 
 @bare
 def first_beyond(right: Ints, x: float, first: int, last: int) -> int:
-    """Return the first of a strip's portals, numbered `first` to `last` - 1, that ends east of x; `last` if none does.
-
-    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    right : (portals,) the last column of each portal, included; its east end lies one square further.
-    x : in squares from the screen's western edge.
-    first, last : the portals, from west to east.
-    """
+    """Return the first of a strip's portals, numbered `first` to `last` - 1, that ends east of x."""
+    # `last` if none does.
     while first < last:
         middle = (first + last) >> 1
         if right[middle] + 1.0 <= x:
@@ -351,28 +248,14 @@ def first_beyond(right: Ints, x: float, first: int, last: int) -> int:
 
 @bare
 def snap_to_corner(x: float) -> float:
-    """Return x (in squares), or the whole number that it equals but for rounding.
-
-    Without this a ray along several corners may slip past one.
-    """
+    """Return x (in squares), or the whole number that it equals but for rounding."""
     corner = np.floor(x + 0.5)
     return float(corner if abs(x - corner) < CORNER_TOLERANCE else x)
 
 
 @bare
 def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float) -> bool:
-    """Record the length of a path to a corner, and return whether no shorter one is known.
-
-    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    best, seen : attributes of `Nodes`: by corner, the length of the shortest path and the search that found it;
-        changed.
-    stamp : the number of the present search.
-    corner : 2 portal for a portal's west end, 2 portal + 1 for its east end.
-    length : of the path to the corner, in squares.
-    """
+    """Record the length of a path to a corner, and return whether no shorter one is known."""
     if seen[corner] != stamp:
         best[corner], seen[corner] = length, stamp
         return True
@@ -385,21 +268,7 @@ def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float
 def add_node(
     span: Floats, link: Ints, counters: Ints, west: float, east: float, done: float, symbol: int, root: int, parent: int
 ) -> int:
-    """Write a node, without putting it on the heap, and return its number.
-
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A node is an interval of a
-    portal that is visible from its root, the last corner of a path. A portal is the overlap of two strips (rows of free
-    squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    span, link, counters : attributes of `Nodes`: interval and length of each node, its portal, root and parent, numbers
-        of nodes; written, and the number of nodes raised by one.
-    west, east : the interval, x in squares; east < west for the goal.
-    done : the length of the path to the root (for the goal: of the whole path), in squares.
-    symbol : the signed portal entered, 0 for a bend or the goal.
-    root, parent : the corner that sees the interval, -1 for the start; the node before, -1 for none.
-    """
+    """Write a node, without putting it on the heap, and return its number."""
     node = counters[NODE_COUNT]
     counters[NODE_COUNT] = node + 1
     span[node, SPAN_WEST], span[node, SPAN_EAST], span[node, SPAN_LENGTH] = west, east, done
@@ -423,23 +292,7 @@ def enqueue(
     counters: Ints,
     first: int,
 ) -> int:
-    """Put the nodes from number `first` on the heap, but return the best one instead when it comes next.
-
-    The best is the one of the least length of a path through it. Its number is returned. Left out are bends, nodes
-    beyond the limit, and nodes whose root has a shorter path. In open space the best new node nearly always comes next.
-    Return NO_PATH when it does not. A node is an interval of a portal that is visible from its root, the last corner of
-    a path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    left, right, line : attributes of `Strips`: the first and last column and the lower row of each portal.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    limit : in squares; nodes whose paths are as long or longer are left out.
-    span, link : attributes of `Nodes`: interval and length of each node, and its portal, root and parent; read.
-    key, heap, best, seen, counters : attributes of `Nodes`: the heap, the shortest path to each corner, numbers of
-        nodes; changed.
-    first : the number of the first node to put there; the last is the last that was made.
-    """
+    """Put the nodes from number `first` on the heap, but return the best one instead when it comes next."""
     size, stamp, next_node, least = counters[HEAP_SIZE], counters[STAMP_INDEX], NO_PATH, np.inf
     for node in range(first, counters[NODE_COUNT]):
         west, east, done, root = (
@@ -478,19 +331,7 @@ def enqueue(
 def add_goal_node(
     left: Ints, right: Ints, line: Ints, ends: Ends, span: Floats, link: Ints, counters: Ints, node: int
 ) -> None:
-    """Add the goal as a node, if it is reached from a node's root within the strip that the node enters.
-
-    A node is an interval of a portal that is visible from its root, the last corner of a path. A portal is the overlap
-    of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    left, right, line : attributes of `Strips`: the first and last column and the lower row of each portal.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    span, link, counters : attributes of `Nodes`: interval and length of each node, its portal, root and parent, numbers
-        of nodes; extended when the goal is reached, else as they were.
-    node : the number of the node.
-    """
+    """Add the goal as a node, if it is reached from a node's root within the strip that the node enters."""
     portal, root = abs(link[node, LINK_PORTAL]) - 1, link[node, LINK_ROOT]
     west, east = span[node, SPAN_WEST], span[node, SPAN_EAST]
     x, y = ends[0], ends[1]
@@ -509,19 +350,7 @@ def add_goal_node(
 
 @bare
 def spell_word(link: Ints, node: int, word: Ints) -> int:
-    """Write the reduced word of the portals on the path to a node, and return its size.
-
-    A node is an interval of a portal that is visible from its root, the last corner of a path. A word is reduced when
-    no symbol stands next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring
-    rows.
-
-    Parameters
-    ----------
-    link : (room, 3) attribute of `Nodes`: portal, root and parent of each node.
-    node : the number of the last node.
-    word : written from index 0 on: signed portals in the order of the path (index plus 1, negative when crossed
-        southwards). A returned size equal to its length says that there was not enough room.
-    """
+    """Write the reduced word of the portals on the path to a node, and return its size."""
     size = 0
     while node >= 0:
         size = append_symbol(word, size, -link[node, LINK_PORTAL])

@@ -13,15 +13,7 @@ from geometry.kernels.jit import bare
 
 
 def extreme_points(free: Bools) -> Floats:
-    """Return the extreme points: corners with exactly one blocked square about them.
-
-    They are (n, 2) float64 points (x, y), in squares from the south-west corner of `free`, row by row from the south.
-    Everything outside `free` is blocked.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where a point may be; row 0 in the south.
-    """
+    """Return the extreme points: corners with exactly one blocked square about them."""
     wall = ~np.pad(free, 1)
     blocked_count = wall[1:, 1:].astype(np.int8) + wall[1:, :-1] + wall[:-1, 1:] + wall[:-1, :-1]
     rows, columns = np.nonzero(blocked_count == 1)
@@ -29,28 +21,7 @@ def extreme_points(free: Bools) -> Floats:
 
 
 def visibility_path(free: Bools, start: XY, goal: XY) -> Floats | None:
-    """Return the shortest path along open lines between start, extreme points and goal; None when there is none.
-
-    A line is open when it stays in free space; extreme points are the corners of blocked squares that stick out into
-    it.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where a point may be; row 0 in the south.
-    start, goal : (x, y) in squares from the south-west corner of `free`.
-
-    Returns
-    -------
-    (n, 2) float64 or None
-        The corners (x, y) of the path, in squares, both ends included.
-
-    Raises
-    ------
-    ValueError
-        When start or goal lies in a blocked square.
-    IndexError
-        When start or goal lies north or east of `free`.
-    """
+    """Return the shortest path along open lines between start, extreme points and goal; None when there is none."""
     if not (free[int(start[1]), int(start[0])] and free[int(goal[1]), int(goal[0])]):
         raise ValueError("start and goal must lie in free squares")
     points = np.vstack([[start], extreme_points(free), [goal]])
@@ -80,17 +51,7 @@ def visibility_path(free: Bools, start: XY, goal: XY) -> Floats | None:
 
 
 def leaves_own_square(padded: Bools, points: Floats, here: int, other: int) -> bool:
-    """Return whether a line leaves a start or goal that is a pinch on the side where its square lies.
-
-    A pinch is a point where two blocked squares touch at a corner. It belongs, as all points, to the square north-east
-    of it. The extreme points are no pinches. True when neither end is a start or goal at a pinch.
-
-    Parameters
-    ----------
-    padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
-    points : (n, 2) points (x, y) in squares without padding, start first, goal last.
-    here, other : indices of the line's ends in `points`.
-    """
+    """Return whether a line leaves a start or goal that is a pinch on the side where its square lies."""
     last = len(points) - 1
     for end, far in ((here, other), (other, here)):
         x, y = points[end].tolist()
@@ -102,14 +63,7 @@ def leaves_own_square(padded: Bools, points: Floats, here: int, other: int) -> b
 
 
 def points_of_path(points: Floats, came_from: np.ndarray[tuple[int], np.dtype[np.int64]], here: int) -> Floats:
-    """Return the points on the path to one of them, from the start on, (n, 2) float64 of (x, y) in squares.
-
-    Parameters
-    ----------
-    points : (m, 2) all points, the start at index 0.
-    came_from : (m,) for each point the index of the one before it on its path.
-    here : the index of the point at which the path ends.
-    """
+    """Return the points on the path to one of them, from the start on, (n, 2) float64 of (x, y) in squares."""
     order = [here]
     while here:
         here = int(came_from[here])
@@ -119,15 +73,7 @@ def points_of_path(points: Floats, came_from: np.ndarray[tuple[int], np.dtype[np
 
 @bare
 def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Return whether a segment stays in free space. It may touch walls but passes no pinch.
-
-    A pinch is a point where two blocked squares touch at a corner. The ends themselves are not tested for pinches.
-
-    Parameters
-    ----------
-    padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
-    x0, y0, x1, y1 : the ends, in squares from the south-west corner of the squares without the frame.
-    """
+    """Return whether a segment stays in free space. It may touch walls but passes no pinch."""
     if y0 > y1:
         x0, y0, x1, y1 = x1, y1, x0, y0
     if y0 == y1:
@@ -152,16 +98,7 @@ def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool
 
 @bare
 def horizontal_open(padded: Bools, low: float, high: float, y: float) -> bool:
-    """Return whether a horizontal segment from x `low` to `high` stays in free space, and passes no pinch between.
-
-    On a line between two rows it is enough that the square on one side is free.
-
-    Parameters
-    ----------
-    padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
-    low, high : x of its western and of its eastern end, in squares without padding.
-    y : its height, in squares without padding.
-    """
+    """Return whether a horizontal segment from x `low` to `high` stays in free space, and passes no pinch between."""
     row = int(np.floor(y))
     for column in range(int(np.floor(low)), int(np.ceil(high))):
         if y == row:
@@ -178,15 +115,7 @@ def horizontal_open(padded: Bools, low: float, high: float, y: float) -> bool:
 
 @bare
 def is_pinch(padded: Bools, x: float, row: int) -> bool:
-    """Return whether the point (x, row) is a pinch: two of the squares about it are blocked, and touch there alone.
-
-    False when x is no whole number (but for rounding), or other than two squares are blocked.
-
-    Parameters
-    ----------
-    padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
-    x, row : the point, in squares without padding; `row` is the number of the row north of it.
-    """
+    """Return whether the point (x, row) is a pinch: two of the squares about it are blocked, and touch there alone."""
     column = int(np.floor(x + 0.5))
     if abs(x - column) > 1e-9:
         return False

@@ -13,31 +13,16 @@ from geometry.kernels.jit import compiled
 
 
 class Components(NamedTuple):
-    """The 4-connected components of a mask: sets of True squares that hang together by shared edges.
+    """The 4-connected components of a mask: sets of True squares that hang together by shared edges."""
 
-    Attributes
-    ----------
-    labels : (rows, columns) int32; 0 outside the mask, 1..number inside: the number of the component of each square.
-        They are numbered by first square in raster order (row by row from row 0 in the south, each from the west).
-    number : number of components; 0 for an empty mask.
-    """
-
+    # (rows, columns) int32; 0 outside the mask, 1..number inside: the number of the component of each square. They are
+    # numbered by first square in raster order (row by row from row 0 in the south, each from the west).
     labels: Labels
-    number: int
+    number: int  # number of components; 0 for an empty mask
 
 
 def components(mask: Bools) -> Components:
     """Label the 4-connected components of a mask: sets of True squares that hang together by shared edges.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool, row 0 in the south; it is not changed.
-
-    Returns
-    -------
-    Components : `labels` (rows, columns) int32: 0 where the mask is False, else the component's number from 1, in order
-        of first squares, row by row from the south, each from the west; and `number`, how many components there are, 0
-        for an empty mask.
 
     Examples
     --------
@@ -51,16 +36,7 @@ def components(mask: Bools) -> Components:
 
 
 def with_edge_neighbours(mask: Bools) -> Bools:
-    """Return a mask dilated by one square: all its squares, and those that share an edge with one.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool; it is not changed.
-
-    Returns
-    -------
-    A new (rows, columns) bool array; what would lie beyond its border is left out.
-    """
+    """Return a mask dilated by one square: all its squares, and those that share an edge with one."""
     edges = mask.copy()
     edges[1:] |= mask[:-1]
     edges[:-1] |= mask[1:]
@@ -71,17 +47,6 @@ def with_edge_neighbours(mask: Bools) -> Bools:
 
 def bounding_boxes(labels: Labels, number: int) -> NDArray[np.int64]:
     """Return the bounding rectangle of each label.
-
-    Parameters
-    ----------
-    labels : (rows, columns) int32, values 0..number.
-    number : the greatest label.
-
-    Returns
-    -------
-    (number + 1, 4) int64, row n for label n (row 0 for the squares of no component): first row, first column, last row,
-    last column (inclusive). A label of no square has -1 as last row and column, and numbers of rows and columns of the
-    array as first row and column.
 
     Examples
     --------
@@ -96,14 +61,7 @@ def bounding_boxes(labels: Labels, number: int) -> NDArray[np.int64]:
 
 @compiled
 def _label_components(mask: Bools, labels: Labels, parent: Labels) -> int:
-    """Fill in the labels of a mask; return the number of components.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool.
-    labels : (rows, columns) int32, all overwritten: 0 outside the mask, else 1..number in order of first squares.
-    parent : (squares // 2 + 2 or more,) int32, scratch: the label that each provisional label is united with.
-    """
+    """Fill in the labels of a mask; return the number of components."""
     rows, columns = mask.shape
     count = 0
     for row in range(rows):
@@ -143,13 +101,7 @@ def _label_components(mask: Bools, labels: Labels, parent: Labels) -> int:
 
 @compiled
 def _extend(labels: Labels, box_of: NDArray[np.int64]) -> None:
-    """Extend the rectangle of each label over all its squares, in place.
-
-    Parameters
-    ----------
-    labels : (rows, columns) int32, values 0..number.
-    box_of : (number + 1, 4) int64, first row, first column, last row, last column of each label; changed.
-    """
+    """Extend the rectangle of each label over all its squares, in place."""
     rows, columns = labels.shape
     for row in range(rows):
         for column in range(columns):

@@ -10,18 +10,6 @@ Ring = tuple[GridCorner, ...]  # a closed polyline, its first corner not repeate
 def outline(mask: NDArray[np.bool_]) -> list[Ring]:
     """Return the boundary rings of the True squares of a mask.
 
-    Parameters
-    ----------
-    mask : (rows, columns) bool, row 0 in the south.
-
-    Returns
-    -------
-    A list of rings, each a tuple of corners (x, y) as whole numbers of squares from the outer corner of square [0, 0],
-    x along columns and y along rows. Only corners where the ring turns are kept, the first is not repeated at the end.
-    The region lies on their left, so that outer rings run counter-clockwise and holes clockwise. Regions are
-    edge-connected: where squares touch at a corner only, their rings stay apart. A ring starts at its least corner (x
-    first); rings are sorted. The list is empty when no square is True.
-
     Examples
     --------
     >>> outline(np.array([[True, True]]))
@@ -34,16 +22,7 @@ def outline(mask: NDArray[np.bool_]) -> list[Ring]:
 
 
 def _pop_ring(start: GridCorner, outgoing: dict[GridCorner, list[GridCorner]]) -> list[GridCorner]:
-    """Follow the boundary from a corner until it closes, and return the corners (x, y) where it turns, with the start.
-
-    In order, the region on the left, in squares from the outer corner of square [0, 0]; the start comes first and is
-    not repeated.
-
-    Parameters
-    ----------
-    start : a corner (x, y), in squares, with an edge in `outgoing`.
-    outgoing : for each corner the unit steps of the boundary edges that leave it; the edges of the ring are removed.
-    """
+    """Follow the boundary from a corner until it closes, and return the corners (x, y) of its turns, with the start."""
     ring, here, direction = [start], start, min(outgoing[start])
     while True:
         outgoing[here].remove(direction)
@@ -57,11 +36,7 @@ def _pop_ring(start: GridCorner, outgoing: dict[GridCorner, list[GridCorner]]) -
 
 
 def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[GridCorner, list[GridCorner]]:
-    """Return for each corner the directions of the boundary edges that leave it, with the region on their left.
-
-    The keys are corners (x, y) in squares from the outer corner of square [0, 0] of the mask (rows, columns); the
-    values unit steps (dx, dy), one or two. Corners without an edge are no keys. Beyond the mask counts as False.
-    """
+    """Return for each corner the directions of the boundary edges that leave it, with the region on their left."""
     framed = np.pad(mask, 1)
     inner = framed[1:-1, 1:-1]
     sides = (
@@ -79,13 +54,7 @@ def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[GridCorner, list[GridCorner
 
 
 def _leftmost(direction: GridCorner, choices: list[GridCorner]) -> GridCorner | None:
-    """Return the one of `choices` that turns furthest to the left, which stays with the same square; None if empty.
-
-    Parameters
-    ----------
-    direction : the unit step (dx, dy) with which the corner was reached; the left is seen along it.
-    choices : unit steps that leave the corner; the one straight back is never taken.
-    """
+    """Return the one of `choices` that turns furthest to the left, which stays with the same square; None if empty."""
     dx, dy = direction
     for turn in ((-dy, dx), (dx, dy), (dy, -dx)):
         if turn in choices:
@@ -94,10 +63,7 @@ def _leftmost(direction: GridCorner, choices: list[GridCorner]) -> GridCorner | 
 
 
 def _normalise(ring: list[GridCorner]) -> Ring:
-    """Return the ring as a tuple, without corners on straight stretches, rotated to begin at its least corner.
-
-    `ring` lists corners (x, y) in squares, the first not repeated; the least is the westernmost, then southernmost.
-    """
+    """Return the ring as a tuple, without corners on straight stretches, rotated to begin at its least corner."""
     count = len(ring)
     kept = [
         corner

@@ -27,36 +27,24 @@ MAX_COLUMN_STEPS = 67  # squares: column distances are capped here, lest 16 bits
 
 
 class RowWindow(NamedTuple):
-    """Scratch memory for measuring rows of a padded width, one after another from the north.
+    """Scratch memory for measuring rows of a padded width, one after another from the north."""
 
-    The padded width is columns + 2: one blocked column on either side.
-
-    Attributes
-    ----------
-    gap : (width,) int16, steps to the nearest blocked square in each column of the row last measured; 0 on blocked
-        ones.
-    own : (2 ROW_PADDING + width,) int16, squared distances to those, in half squares squared; it holds column j at
-        ROW_PADDING + j, and 0, as of walls, on both sides.
-    value : (width,) int16, squared distances of the row to the nearest blocked square at all, in half squares squared.
-    reach : (width / COLUMNS_PER_STRETCH, rounded up) int32: for each stretch of 128 columns how many columns its values
-        make one look aside in the next row.
-    sites, heights : (width + 1,) int64, of an envelope of parabolas (see distance_transform.lower_envelope).
-    """
-
+    # (width,) int16, steps to the nearest blocked square in each column of the row last measured; 0 on blocked ones
     gap: ColumnSteps
+    # (2 ROW_PADDING + width,) int16, squared distances to those, in half squares squared; it holds column j at
+    # ROW_PADDING + j, and 0, as of walls, on both sides
     own: ColumnSteps
+    # (width,) int16, squared distances of the row to the nearest blocked square at all, in half squares squared
     value: ColumnSteps
+    # (width / COLUMNS_PER_STRETCH, rounded up) int32: for each stretch of 128 columns how many columns its values make
+    # one look aside in the next row
     reach: Ints
-    sites: Sites
+    sites: Sites  # (width + 1,) int64, of an envelope of parabolas (see distance_transform.lower_envelope).
     heights: Sites
 
 
 def new_row_window(width: int) -> RowWindow:
-    """Return scratch memory for rows of a padded width (columns + 2), in the state that it has north of all rows.
-
-    The RowWindow holds, by padded column, steps to the nearest blocked square (0 at first) and squared distances in
-    half squares squared, and by stretch of 128 columns how far to look aside.
-    """
+    """Return scratch memory for rows of a padded width (columns + 2), in the state that it has north of all rows."""
     own, reach = np.zeros(width + 2 * ROW_PADDING, np.int16), np.zeros(-(-width // COLUMNS_PER_STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
     return RowWindow(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
@@ -64,21 +52,8 @@ def new_row_window(width: int) -> RowWindow:
 
 @bare
 def fill_distance_rows(square: SquaredDistances, steps: ColumnSteps, south: int, north: int, window: RowWindow) -> bool:
-    """Fill rows of squared distances from `north` down to `south`, inclusive; return whether their type holds them all.
-
-    A squared distance is that from the centre of a square to the nearest point of a blocked square, in half squares
-    squared; 0 on blocked squares. When False is returned, those that are too large were capped at the type's greatest
-    value.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int16 or int32, output, padded by one blocked square on each side.
-    steps : (rows + 2, columns + 2 or more) int16, steps to the nearest blocked square to the south (see
-        count_steps_south). It may lie in the same memory as `square`, row by row: each row is read before it is
-        written.
-    south, north : padded rows, from 1 to rows; row 1 is the southernmost of the floor.
-    window : scratch, as the row north of `north` left it; left as row `south` makes it.
-    """
+    """Fill rows of squared distances from `north` down to `south`, inclusive."""
+    # Return whether their type holds them all.
     width, roof, fits = square.shape[1], largest_value_of(square), True
     gap, own, value, reach, sites, heights = window
     for row in range(north, south - 1, -1):
@@ -104,16 +79,7 @@ def fill_distance_rows(square: SquaredDistances, steps: ColumnSteps, south: int,
 
 @bare
 def add_column_distances(steps: ColumnSteps, gap: ColumnSteps, own: ColumnSteps) -> None:
-    """Update `gap` for the next row to the south, and write the squared distances along columns to `own`.
-
-    Parameters
-    ----------
-    steps : (width or more,) int16, steps to the nearest blocked square to the south, of this row.
-    gap : (width,) int16, steps to the nearest blocked square of the column, of the row to the north; overwritten with
-        this row's.
-    own : (width,) int16, output: squared distance along the column to that square's edge, in half squares squared; 0 on
-        blocked squares, (2 * 67 - 1)^2 = 17689 where it is 67 steps or more away (`gap` is not capped).
-    """
+    """Update `gap` for the next row to the south, and write the squared distances along columns to `own`."""
     count_steps_to_nearest(steps, gap)
     for j in range(gap.shape[0]):
         nearest = gap[j]
@@ -123,18 +89,7 @@ def add_column_distances(steps: ColumnSteps, gap: ColumnSteps, own: ColumnSteps)
 
 @bare
 def minimise_over_sites(own: ColumnSteps, value: ColumnSteps, steps: int) -> None:
-    """Fill `value` with the least squared distance (half squares squared) over all sites up to `steps` columns off.
-
-    A site is the nearest blocked square of a column. Looking further than `steps`, up to a multiple of four, does no
-    harm.
-
-    Parameters
-    ----------
-    own : (len(value) + 2 ROW_PADDING,) int16, squared distances along columns; it starts ROW_PADDING columns before
-        `value`.
-    value : (n,) int16, output, all overwritten.
-    steps : at most MAX_SITE_STEPS (60).
-    """
+    """Fill `value` with the least squared distance (half squares squared) over all sites up to `steps` columns off."""
     here = own[ROW_PADDING:]
     for j in range(value.shape[0]):
         value[j] = here[j]
@@ -144,15 +99,7 @@ def minimise_over_sites(own: ColumnSteps, value: ColumnSteps, steps: int) -> Non
 
 @bare
 def minimise_over_four(west: ColumnSteps, east: ColumnSteps, t: int, value: ColumnSteps) -> None:
-    """Lower `value`, in place, by the sites (nearest blocked squares of columns) t to t + 3 columns off on either side.
-
-    Parameters
-    ----------
-    west, east : squared distances along columns, int16, half squares squared; `west` starts t + 3 columns before
-        `value`, `east` t columns behind its start.
-    t : number of columns, 1 or more.
-    value : (n,) int16, least squared distances so far, half squares squared.
-    """
+    """Lower `value`, in place, by the sites (nearest blocked squares of columns) t to t + 3 columns on either side."""
     a, b = np.int16((2 * t - 1) ** 2), np.int16((2 * t + 1) ** 2)
     c, d = np.int16((2 * t + 3) ** 2), np.int16((2 * t + 5) ** 2)
     for j in range(value.shape[0]):
@@ -168,10 +115,7 @@ def minimise_over_four(west: ColumnSteps, east: ColumnSteps, t: int, value: Colu
 
 @bare
 def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
-    """Copy `value` (n,) to `out` (n,), which may be of a wider type; return the largest, 0 if none is above 0.
-
-    Squared distances of a row to the nearest blocked square, in half squares squared, as is the result.
-    """
+    """Copy `value` (n,) to `out` (n,), which may be of a wider type; return the largest, 0 if none is above 0."""
     largest = np.int16(0)
     for j in range(value.shape[0]):
         out[j] = value[j]
@@ -181,12 +125,7 @@ def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
 
 @bare
 def largest_distance(out: SquaredDistances) -> int:
-    """Return the largest of some squared distances (n,), one or more, in their own unit (half squares squared).
-
-    Parameters
-    ----------
-    out : (n,) int16 or int32, one or more, by padded column of a row.
-    """
+    """Return the largest of some squared distances (n,), one or more, in their own unit (half squares squared)."""
     largest = 0 * out[0]
     for j in range(out.shape[0]):
         largest = out[j] if out[j] > largest else largest
@@ -195,11 +134,7 @@ def largest_distance(out: SquaredDistances) -> int:
 
 @bare
 def steps_needed_for(largest: int) -> int:
-    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared.
-
-    Sites (nearest blocked squares of columns) further aside are no nearer than that. Rounded up to whole columns; 0 for
-    0 and 1.
-    """
+    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared."""
     return int(np.ceil(0.5 * np.sqrt(float(largest)) - 0.5))
 
 
@@ -207,20 +142,7 @@ def steps_needed_for(largest: int) -> int:
 def fill_by_envelope(
     gap: ColumnSteps, out: SquaredDistances, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
 ) -> int:
-    """Measure by envelopes the runs of free squares of one row that meet columns `first` to `last` (exclusive).
-
-    Returns the column behind the last one measured: runs are filled to their ends, also beyond `last`; or `done` if
-    that is greater.
-
-    Parameters
-    ----------
-    gap : (width,) int16, steps to the nearest blocked square in each column; 0 on blocked squares, and at both ends.
-    out : (width,) int16 or int32, output, half squares squared; 0 on blocked squares.
-    first, last : padded columns.
-    done : columns below this one are filled already and left alone.
-    roof : values above it are capped there, half squares squared.
-    sites, heights : (width + 1,) int64, scratch.
-    """
+    """Measure by envelopes the runs of free squares of one row that meet columns `first` to `last` (exclusive)."""
     column = first if first > done else done
     while column < last:
         if gap[column] == 0:

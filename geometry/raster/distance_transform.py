@@ -25,17 +25,7 @@ TILE_SIDE = 16  # squares; derived: 7 x 7 whole tiles fit every window of 129 x 
 
 
 def smallest_distance_type(free: Bools) -> type[np.int16] | type[np.int32]:
-    """Return the smaller integer type, np.int16 or np.int32, that holds all squared distances of a raster.
-
-    They are in half squares squared. On wide floor it may be np.int32 without need. 16 bits hold clearances up to 90.5
-    squares. Any larger one has 129 x 129 free squares about it, and these 7 x 7 whole tiles of 16 x 16: where no such
-    are found, 16 bits surely suffice. Of a tile one diagonal is looked at, which crosses every wall, and a quarter of
-    that first.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True on free squares.
-    """
+    """Return the smaller integer type, np.int16 or np.int32, that holds all squared distances of a raster."""
     if min(free.shape) < 129:
         return np.int16
     rows, columns = (n // TILE_SIDE * TILE_SIDE for n in free.shape)
@@ -49,11 +39,7 @@ def smallest_distance_type(free: Bools) -> type[np.int16] | type[np.int32]:
 
 
 def has_open_block(tiles: Bools) -> bool:
-    """Return whether some 7 x 7 neighbouring tiles are all True.
-
-    `tiles` : (rows, columns) bool, one value for each tile of 16 x 16 squares; when either is below 7 the answer is
-        False.
-    """
+    """Return whether some 7 x 7 neighbouring tiles are all True."""
     for n in (1, 2, 3):  # whether 2, 4, 7 to the north and east are
         tiles = tiles[n:] & tiles[:-n]
         tiles = tiles[:, n:] & tiles[:, :-n]
@@ -62,16 +48,8 @@ def has_open_block(tiles: Bools) -> bool:
 
 @bare
 def count_steps_south(free: Bools, steps: ColumnSteps) -> None:
-    """Fill `steps` with the steps from each square south to the nearest blocked one in its column; 0 if it is blocked.
-
-    A step is one square; a free square whose southern neighbour is blocked has 1.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, row 0 in the south; everything outside counts as blocked.
-    steps : (rows + 1, columns + 2 or more) int16, output, padded: square [row, column] is at [row + 1, column + 1]. Row
-        0 and the columns 0 and columns + 1 become 0; further rows and columns are left alone.
-    """
+    """Fill `steps` with the steps from each square south to the nearest blocked one in its column."""
+    # 0 if it is blocked.
     rows, columns = free.shape
     for j in range(columns + 2):
         steps[0, j] = 0
@@ -85,13 +63,8 @@ def count_steps_south(free: Bools, steps: ColumnSteps) -> None:
 
 @bare
 def count_steps_to_nearest(steps: ColumnSteps, gap: ColumnSteps) -> None:
-    """Update `gap` from the row to the north: steps to the nearest blocked square of the column, to the south or north.
-
-    Parameters
-    ----------
-    steps : (width or more,) int16, of this row, steps to the nearest blocked square to the south (count_steps_south).
-    gap : (width,) int16, of the row to the north (0 when that is blocked); overwritten with this row's.
-    """
+    """Update `gap` from the row to the north."""
+    # Steps to the nearest blocked square of the column, to the south or north.
     for j in range(gap.shape[0]):
         down, up = steps[j], np.int16(gap[j] + 1)
         gap[j] = down if down < up else up
@@ -99,10 +72,7 @@ def count_steps_to_nearest(steps: ColumnSteps, gap: ColumnSteps) -> None:
 
 @bare
 def largest_value_of(square: SquaredDistances) -> int:
-    """Return the greatest value that an array's signed integer type holds: 32767 (int16) or 2147483647 (int32).
-
-    `square` : an array of squared distances; only its type is read.
-    """
+    """Return the greatest value that an array's signed integer type holds: 32767 (int16) or 2147483647 (int32)."""
     return int((1 << 8 * square.itemsize - 1) - 1)
 
 
@@ -118,22 +88,7 @@ def fill_run_distances(
     sites: Sites,
     heights: Sites,
 ) -> None:
-    """Fill the squared distances of columns `begin` to `end` (exclusive) within a run of free squares of one row.
-
-    A squared distance is that from the centre of a square to the nearest blocked square, in half squares squared. All
-    columns are padded: column 0 is the blocked frame.
-
-    Parameters
-    ----------
-    gap : (width,) int16, steps to the nearest blocked square in each column.
-    square : (width,) int16 or int32, output, half squares squared; values above `limit` are capped there.
-    first, last : only walls in the columns `first` - 1 to `last` count, and the columns themselves that are asked for.
-        Mostly the run's free squares are first <= column < last. Walls further out must not be nearest to any of the
-        columns asked for.
-    begin, end : the columns to fill, all free.
-    limit : the greatest value to be written, half squares squared.
-    sites, heights : (last - first + 1 or more,) int64, scratch for the envelope.
-    """
+    """Fill the squared distances of columns `begin` to `end` (exclusive) within a run of free squares of one row."""
     top = lower_envelope(gap, first, last, sites, heights)
     best = 0
     for column in range(begin, end):
@@ -151,22 +106,8 @@ def fill_run_distances(
 
 @bare
 def lower_envelope(gap: ColumnSteps, first: int, last: int, sites: Sites, heights: Sites) -> int:
-    """Write the sites of a run of free squares whose parabolas are lowest somewhere; return the index of the last one.
-
-    It is an index into `sites` and `heights`, 0 or more.
-
-    The squared distance of a place x to a site is (x - site)^2 + edge^2: a parabola of x, all in half squares. A site
-    is the edge between two neighbouring columns; `edge` is the distance along it to the nearest blocked square of the
-    two columns.
-
-    Parameters
-    ----------
-    gap : (width,) int16, steps to the nearest blocked square in each column of the row.
-    first, last : the run's free squares are first <= column < last, padded columns.
-    sites : (last - first + 1 or more,) int64, output from index 0 on, ascending: the places of the sites in half
-        squares, with 0 at the centre of column `first`.
-    heights : of the same length, output: edge^2 + site^2 of each, in half squares squared.
-    """
+    """Write the sites of a run of free squares whose parabolas are lowest somewhere."""
+    # Return the index of the last one.
     top = -1
     before = np.int64(gap[first - 1])
     for column in range(first, last + 1):
@@ -186,16 +127,6 @@ def lower_envelope(gap: ColumnSteps, first: int, last: int, sites: Sites, height
 
 @bare
 def is_hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
-    """Return whether the site on top of an envelope is lowest nowhere once a new site is added behind it.
-
-    It lies then on or above the line from the one beneath it to the new one, as points (site, height).
-
-    Parameters
-    ----------
-    sites, heights : int64, the envelope so far: by index the places of its sites in half squares, ascending, and edge^2
-        + site^2 of each, in half squares squared.
-    top : index of its last site, 1 or more.
-    site, height : the new site in half squares, and its height in half squares squared.
-    """
+    """Return whether the site on top of an envelope is lowest nowhere once a new site is added behind it."""
     rise = (heights[top] - heights[top - 1]) * (site - sites[top])
     return bool(rise >= (height - heights[top]) * (sites[top] - sites[top - 1]))

@@ -10,18 +10,7 @@ CLEARANCE_TOLERANCE = 1e-9  # squares: a disc may be this much too near to a wal
 
 
 def disc_stays_clear(square: SquaredDistances, start: XY, goal: XY, radius: float) -> bool:
-    """Return whether a disc moved straight from one point to another of the same square stays clear of blocked squares.
-
-    It may touch them, and even overlap by 1e-9 squares. Everything outside the raster counts as blocked.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) squared clearances in half squares, (2 * clearance in squares)^2, padded by one
-        blocked cell on each side; 0 where blocked.
-    start, goal : points (x, y) in squares, both in the same square of the raster; (0, 0) is its south-west corner,
-        without the padding.
-    radius : radius of the disc, in squares.
-    """
+    """Return whether a disc moved straight between two points of one square stays clear of blocked squares."""
     row, column = int(start[1]) + 1, int(start[0]) + 1
     centre, height = (column - 0.5, row - 0.5), 0.5 * float(square[row, column]) ** 0.5
     if height - max(hypot(x - centre[0], y - centre[1]) for x, y in (start, goal)) >= radius:
@@ -35,15 +24,7 @@ def disc_stays_clear(square: SquaredDistances, start: XY, goal: XY, radius: floa
 
 
 def distance_to_boxes(p: Floats, q: Floats, corner: Floats) -> Floats:
-    """Return the distances (n,) float64, in squares, from the segment p to q to unit squares that it does not cross.
-
-    They are attained at an end of the segment or at a corner of a square; 0 where they touch.
-
-    Parameters
-    ----------
-    p, q : (2,) float64, ends x, y of the segment in squares; they may coincide.
-    corner : (n, 2) float64, the south-west corners x, y of the unit squares, in the same frame; n may be 0.
-    """
+    """Return the distances (n,) float64, in squares, from the segment p to q to unit squares that it does not cross."""
     ends = [np.hypot(*np.maximum(np.maximum(corner - end, end - corner - 1.0), 0.0).T) for end in (p, q)]
     along = q - p
     square = float(along @ along) or 1.0

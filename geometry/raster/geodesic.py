@@ -20,22 +20,6 @@ GEODESIC_STEP, GEODESIC_DIAGONAL = (
 def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
     """Return the length of the shortest path from a start to every square, in fifths of squares.
 
-    A step to one of the four edge neighbours costs 5, a diagonal step 7; the latter needs both squares beside it free.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where a path may lead; row 0 in the south.
-    column, row : the start, which must be free.
-
-    Returns
-    -------
-    (rows, columns) int32, fifths of squares; 0 at the start, GEODESIC_UNREACHED (-1) where no path leads and on squares
-    that are not free.
-
-    Raises
-    ------
-    ValueError : the start is not a free square of the raster.
-
     Examples
     --------
     >>> reach(np.array([[True, True, False], [True, True, True]]), 0, 0).tolist()
@@ -51,14 +35,7 @@ def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
 
 @compiled
 def _fill_distances(free: NDArray[np.bool_], column: int, row: int, distance: NDArray[np.int32]) -> None:
-    """Fill `distance` with the lengths of shortest paths over the eight neighbours, in fifths of squares.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool.
-    column, row : the start, a free square.
-    distance : (rows, columns) int32, all GEODESIC_UNREACHED (-1) before; squares that no path reaches stay so.
-    """
+    """Fill `distance` with the lengths of shortest paths over the eight neighbours, in fifths of squares."""
     rows, columns = free.shape
     ring = GEODESIC_DIAGONAL + 1
     first = np.full(ring, -1, np.int64)  # per distance modulo the ring: the last entry that was put there

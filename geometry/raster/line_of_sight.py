@@ -17,24 +17,6 @@ MIN_OVERLAP = 1e-9  # squares: two squares that overlap by less only touch; boun
 def straight(free: Bools, column: int, row: int, longest: int, among: Bools | None = None) -> Bools:
     """Return the squares to which one straight move of a unit square leads from a start, the start among them.
 
-    All squares of which the moving unit square covers a part on the way, its first and last included, must be free. It
-    does not turn; its centre goes straight from centre to centre, in any direction.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, row 0 in the south.
-    column, row : the start, a square of the raster. If it is not free no move leads anywhere: all is False.
-    longest : greatest number of rows, and of columns, of a move, in squares.
-    among : (rows, columns) bool, the squares that are asked about, all others being False in the answer; None for all.
-
-    Returns
-    -------
-    (rows, columns) bool, True on the squares that can be reached.
-
-    Raises
-    ------
-    ValueError : the start lies outside the raster.
-
     Examples
     --------
     >>> straight(np.array([[True, True, True], [True, False, True]]), 0, 0, 9).tolist()
@@ -51,16 +33,7 @@ def straight(free: Bools, column: int, row: int, longest: int, among: Bools | No
 
 @compiled
 def _mark_reached(free: Bools, candidates: Bools, column: int, row: int, longest: int, reached: Bools) -> None:
-    """Mark the candidates that one straight move of a unit square leads to from the start (column, row).
-
-    Parameters
-    ----------
-    free : (rows, columns) bool.
-    candidates : (rows, columns) bool, the squares that are asked about, all of them free.
-    column, row : the start.
-    longest : greatest number of rows, and of columns, of a move; squares further off are left alone.
-    reached : (rows, columns) bool, output, all False before.
-    """
+    """Mark the candidates that one straight move of a unit square leads to from the start (column, row)."""
     rows, columns = free.shape
     for r in range(max(row - longest, 0), min(row + longest + 1, rows)):
         for c in range(max(column - longest, 0), min(column + longest + 1, columns)):
@@ -69,12 +42,7 @@ def _mark_reached(free: Bools, candidates: Bools, column: int, row: int, longest
 
 @compiled
 def _sweep_is_free(free: Bools, column: int, row: int, dx: int, dy: int) -> bool:
-    """Return whether every square is free that a unit square sweeps on its way from (column, row) by (dx, dy) squares.
-
-    `free` : (rows, columns) bool; the start and the goal (column + dx, row + dy) lie inside. Squares that it only
-        touches do
-    not count.
-    """
+    """Return whether every square is free that a unit square sweeps from (column, row) by (dx, dy) squares."""
     for j in range(min(0, dy), max(0, dy) + 1):
         first, last = 0.0, 1.0  # the part of the way on which it meets this row
         if dy != 0:

@@ -48,21 +48,7 @@ def squares(shape: Any, width: int, height: int) -> npt.NDArray[np.bool_]:
 
 
 def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int) -> npt.NDArray[np.bool_]:
-    """Return the squares of a table that a shape covers after at least one of some motions.
-
-    Parameters
-    ----------
-    shape : shapely Polygon or MultiPolygon, in squares, table frame: x to the east, y to the north, (0, 0) at the
-        table's south-west corner.
-    motions : each (of motion.se2) is applied to the shape as given; they do not follow each other, and only where each
-        one ends counts, not what lies on the way.
-    width, height : size of the table in squares.
-
-    Returns
-    -------
-    (height, width) bool, row 0 in the south: the union of `squares` of the shape after each motion. All False without a
-    motion; what lies off the table is left out.
-    """
+    """Return the squares of a table that a shape covers after at least one of some motions."""
     edges, covered = outline_edges(shape), np.zeros((height, width), np.bool_)
     if not len(edges) or not len(motions):
         return covered
@@ -80,57 +66,26 @@ def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int
 
 
 def covered_areas(shape: Any, width: int, height: int) -> Floats:
-    """Return the area that a shape covers in every square of a table: (height, width) float64, from 0 to 1 square.
-
-    Parameters
-    ----------
-    shape : shapely Polygon or MultiPolygon, in squares, table frame: x to the east, y to the north, (0, 0) at the
-        table's south-west corner. Other geometries cover nothing.
-    width, height : size of the table in squares.
-
-    Returns
-    -------
-    (height, width) float64, row 0 in the south; exact but for rounding (about 1e-12).
-    """
+    """Return the area that a shape covers in every square of a table: (height, width) float64, from 0 to 1 square."""
     return _covered_areas(outline_edges(shape), width, height)
 
 
 def window_of(edges: Floats) -> tuple[int, int, npt.NDArray[np.bool_]]:
-    """Return the squares that a shape with some edges covers, within its containing rectangle.
-
-    As `squares`, for a shape that moves often.
-
-    Parameters
-    ----------
-    edges : (n, 4) rows x0, y0, x1, y1 of closed rings, the interior on their left, in squares, table frame, as
-        `outline_edges` returns them; in any order. n at least 1.
-
-    Returns
-    -------
-    Column and row of the south-west square of the rectangle, and (rows, columns) bool, row 0 in the south.
-    """
+    """Return the squares that a shape with some edges covers, within its containing rectangle."""
+    # As `squares`, for a shape that moves often.
     return _window_of(edges)
 
 
 def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
-    """Return the area to the left of closed rings of edges in every square: (height, width) float64, squares squared.
-
-    Parameters
-    ----------
-    edges : (n, 4) rows x0, y0, x1, y1 in squares, from the south-west corner of square [0, 0]; in any order. They may
-        lie outside the raster.
-    width, height : numbers of columns and rows.
-    """
+    """Return the area to the left of closed rings of edges in every square."""
+    # (height, width) float64, squares squared.
     sums = np.zeros((2, height, width + 2))
     _accumulate(edges, sums)
     return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]
 
 
 def outline_edges(shape: Any) -> Floats:
-    """Return all boundary edges of a shape, the interior on their left: (n, 4) float64, rows x0, y0, x1, y1.
-
-    They are in the unit and frame of the shape, a shapely geometry; (0, 4) when it has no polygon.
-    """
+    """Return all boundary edges of a shape, the interior on their left: (n, 4) float64, rows x0, y0, x1, y1."""
     rings = []
     for part in shapely.get_parts(shapely.orient_polygons(shape)):
         if part.geom_type == "Polygon" and not part.is_empty:
@@ -142,18 +97,8 @@ def outline_edges(shape: Any) -> Floats:
 
 @compiled
 def _accumulate(edges: Floats, sums: Floats) -> None:
-    """Add to `sums` the signed areas between every edge and what lies east of it; edges to the south count positive.
-
-    Each edge is cut at all grid lines that lie strictly between its ends, so that a piece lies in one square. It covers
-    a part of that square, east of it, and its whole height in every square further east.
-
-    Parameters
-    ----------
-    edges : (n, 4) float64, rows x0, y0, x1, y1, in squares from the south-west corner of square [0, 0].
-    sums : (2, rows, columns + 2) float64, changed: sums[0, row, column] gets what a piece covers in its own square,
-        sums[1, row, column + 1] how much more it covers in each square from the next one on, so that cumulative sums
-        along a row are the areas.
-    """
+    """Add to `sums` the signed areas between every edge and what lies east of it; edges to the south count positive."""
+    # Each edge is cut at all grid lines that lie strictly between its ends, so that a piece lies in one square.
     height, width = sums.shape[1], sums.shape[2] - 2
     for n in range(len(edges)):
         x0, y0, x1, y1 = edges[n, 0], edges[n, 1], edges[n, 2], edges[n, 3]
@@ -181,15 +126,7 @@ def _accumulate(edges: Floats, sums: Floats) -> None:
 
 @compiled
 def _covered_squares(edges: Floats, width: int, height: int) -> npt.NDArray[np.bool_]:
-    """Return the squares of which the shape with some edges covers more than MIN_COVERED_AREA.
-
-    (height, width) bool, row 0 in the south; equal to `_covered_areas(...) > MIN_COVERED_AREA` to the last digit.
-
-    Parameters
-    ----------
-    edges : (n, 4) rows x0, y0, x1, y1 of closed rings, in squares from the south-west corner of square [0, 0].
-    width, height : numbers of columns and rows.
-    """
+    """Return the squares of which the shape with some edges covers more than MIN_COVERED_AREA."""
     sums = np.zeros((2, height, width + 2))
     _accumulate(edges, sums)
     covered = np.empty((height, width), np.bool_)
@@ -221,15 +158,7 @@ def _window_of(edges: Floats) -> tuple[int, int, npt.NDArray[np.bool_]]:
 def _cut_at(
     x0: float, y0: float, x1: float, y1: float, start: float, stop: float, number: int, lines: int
 ) -> tuple[float, float]:
-    """Return the point (x, y) where an edge meets number `number` of the `lines` grid lines that it crosses in order.
-
-    Parameters
-    ----------
-    x0, y0, x1, y1 : the ends of the edge, in squares.
-    start, stop : the coordinate (x or y), at its ends, that is whole on these lines.
-    number : counted from its first end; 0 stands for that end, lines + 1 for the last.
-    lines : how many grid lines of this direction lie strictly between the ends.
-    """
+    """Return the point (x, y) where an edge meets `number` of the `lines` grid lines that it crosses in order."""
     if number == 0:
         return x0, y0
     if number > lines:

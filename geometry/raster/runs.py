@@ -10,16 +10,10 @@ from geometry.kernels.arrays import Bools, Longs
 
 
 class Runs(NamedTuple):
-    """The runs of a mask, row by row, from west to east in each.
+    """The runs of a mask, row by row, from west to east in each."""
 
-    Attributes
-    ----------
-    rows : (n,) int64, the row of each run.
-    first, after : (n,) int64, its first column, and the column after its last.
-    """
-
-    rows: Longs
-    first: Longs
+    rows: Longs  # (n,) int64, the row of each run
+    first: Longs  # (n,) int64, its first column, and the column after its last
     after: Longs
 
     def each(self) -> Iterator[tuple[int, int, int]]:
@@ -28,20 +22,13 @@ class Runs(NamedTuple):
 
 
 def runs_along_rows(mask: Bools) -> Runs:
-    """Return the runs of True squares of a mask along its rows.
-
-    mask : (rows, columns) bool.
-    """
+    """Return the runs of True squares of a mask along its rows."""
     change = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, first = np.nonzero(change == 1)
     return Runs(rows, first, np.nonzero(change == -1)[1])
 
 
 def mask_to_polygon(mask: Bools) -> Any:
-    """Convert a mask (rows, columns) of bool to one shapely geometry, in squares, in the frame of the array.
-
-    x is the column and y the row; (0, 0) is the outer corner of square [0, 0]. A Polygon or MultiPolygon; an empty
-    geometry for an empty mask.
-    """
+    """Convert a mask (rows, columns) of bool to one shapely geometry, in squares, in the frame of the array."""
     rows, first, after = runs_along_rows(mask)
     return shapely.union_all(shapely.box(first, rows, after, rows + 1))

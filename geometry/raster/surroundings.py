@@ -13,21 +13,7 @@ Codes = npt.NDArray[np.uint8]  # small numbers, one a square
 def survey_square(
     raster: Codes, column: int, row: int, members: Longs, others: Longs, outside: int, counts: Codes, values: Codes
 ) -> None:
-    """Count the marked squares around one square, group by group, and read some squares.
-
-    A square is marked when its number is not 0. Squares off the raster hold `outside`.
-
-    Parameters
-    ----------
-    raster : (rows, columns) uint8, row 0 in the south.
-    column, row : the square; it may lie off the raster.
-    members : (n, 3) int64: offsets to the east and to the north in squares, and the number of the group to which that
-        square belongs, from 0.
-    others : (m, 2) int64: offsets to the east and to the north of the squares that are read.
-    outside : from 0 to 255.
-    counts : uint8, one a group; output. A group has at most 255 squares.
-    values : (m,) uint8; output: the numbers of the squares that are read.
-    """
+    """Count the marked squares around one square, group by group, and read some squares."""
     rows, columns = raster.shape
     counts[:] = 0
     for n in range(len(members)):

@@ -18,16 +18,6 @@ WINDING_STEP, WINDING_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 
 def crossing_number(points: NDArray[np.float64], about: tuple[float, float]) -> int:
     """Return how often a polyline crosses the ray from a point towards +x: upwards (to +y) counts +1, downwards -1.
 
-    Parameters
-    ----------
-    points : (n, 2) corners x, y of the polyline, in squares. A point at the ray's own height counts as above it.
-    about : (x, y), where the ray begins, in the same frame.
-
-    Returns
-    -------
-    The signed number; of a closed polyline, whose last point repeats the first, it is the winding number about the
-    point, positive counter-clockwise. 0 for fewer than two points that differ.
-
     Examples
     --------
     >>> crossing_number(np.array([[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]]), (0.0, 0.0))
@@ -37,10 +27,7 @@ def crossing_number(points: NDArray[np.float64], about: tuple[float, float]) -> 
 
 
 def crossings_by_step(points: NDArray[np.float64], about: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the crossing number of each of the n - 1 steps of a polyline about each of m points, (m, n - 1).
-
-    about : (m, 2), where the rays begin, in the frame of `points`. See `crossing_number`.
-    """
+    """Return the crossing number of each of the n - 1 steps of a polyline about each of m points, (m, n - 1)."""
     x, y = np.asarray(points, float).T[:, None, :] - about.T[:, :, None]
     above = y >= 0
     rise = above[:, 1:].astype(int) - above[:, :-1].astype(int)
@@ -53,26 +40,6 @@ def shortest_path_with_crossing_number(
     free: NDArray[np.bool_], start: Square, goal: Square, about: tuple[float, float], number: int
 ) -> list[Square] | None:
     """Return the shortest path over free squares (eight neighbours, no corners cut) with a given crossing number.
-
-    The crossing number says how often the path crosses the ray from a point towards +x: upwards (to the north) counts
-    +1, downwards -1. A step to an edge neighbour counts 5, a diagonal one 7.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, row 0 in the south.
-    start, goal : (column, row) of free squares; they may be the same.
-    about : (x, y) in squares, the point from which the ray goes towards +x; (0, 0) is the outer corner of square [0,
-        0], so centres of squares lie at (column + 0.5, row + 0.5).
-    number : the crossing number wanted, -2 to 2.
-
-    Returns
-    -------
-    The list of squares (column, row) from start to goal, both included, or None if no such path has crossing numbers -2
-    to 2 all along it. One square when the start is the goal and the number is 0.
-
-    Raises
-    ------
-    ValueError : an end is not free, or the number is out of range.
 
     Examples
     --------
@@ -103,20 +70,7 @@ def shortest_path_with_crossing_number(
 def _search_sheets(
     free: NDArray[np.bool_], origin: int, end: int, first: int, ray: NDArray[np.bool_], parent: NDArray[np.int64]
 ) -> bool:
-    """Fill `parent` along shortest paths from `origin` until `end` is reached; return whether it is.
-
-    Cells are numbered (sheet * rows + row) * columns + column. A sheet is a copy of the raster for one crossing number
-    so far: a step over the ray upwards leads to the next sheet, one downwards to the one before, and none beyond the
-    last.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool.
-    origin, end : cells, both on free squares.
-    first : the lowest row whose centres count as above the ray; it may lie outside the raster.
-    ray : (columns,) bool, over which columns the ray passes.
-    parent : (sheets * rows * columns,) int64, output: the cell before each cell reached; others stay as they are (-1).
-    """
+    """Fill `parent` along shortest paths from `origin` until `end` is reached; return whether it is."""
     rows, columns = free.shape
     sheets = parent.shape[0] // (rows * columns)
     ring = WINDING_DIAGONAL + 1

@@ -20,65 +20,42 @@ PATH_SLACK = 1.05  # factor on the lower bound in biased searches; on random squ
 
 
 class RouteQuery(NamedTuple):
-    """The nodes, arcs and closed chains that one query adds to the pathgraph of n nodes and m chains.
+    """The nodes, arcs and closed chains that one query adds to the pathgraph of n nodes and m chains."""
 
-    Attributes
-    ----------
-    joint : (4,) the nodes to which the start's two arcs lead, and those from which the goal's two arcs come; -1 for
-        none.
-    cost : (5,) the lengths of the five arcs (see the module's description), in squares; infinite where there is none.
-    sight : (2, landmarks) the goal's distances from the landmarks (row 0), and the start's (row 1), in squares.
-    line : (4,) a point (x, y) of the straight line from start to goal, in squares, and the line's normal, scaled: an
-        arc's cost grows by the share that the product of this normal and the offset of the arc's head from the point
-        gives; a normal of 0 for no bias.
-    closed : (m,) 0 for chains that may be walked from end to end; bit 0: closed on request, bit 1: split by an end.
-    closed_steps : (b, 2) chain and position of the steps that may not be taken: each from the cell at that position on
-        the chain, counted from 0, to the next one.
-    """
-
+    # (4,) the nodes to which the start's two arcs lead, and those from which the goal's two arcs come; -1 for none
     joint: Ints
+    # (5,) the lengths of the five arcs (see the module's description), in squares; infinite where there is none
     cost: Floats
-    sight: Floats
+    sight: Floats  # (2, landmarks) the goal's distances from the landmarks (row 0), and the start's (row 1), in squares
+    # (4,) a point (x, y) of the straight line from start to goal, in squares, and the line's normal, scaled: an arc's
+    # cost grows by the share that the product of this normal and the offset of the arc's head from the point gives; a
+    # normal of 0 for no bias
     line: Floats
+    # (m,) 0 for chains that may be walked from end to end; bit 0: closed on request, bit 1: split by an end
     closed: States
+    # (b, 2) chain and position of the steps that may not be taken: each from the cell at that position on the chain,
+    # counted from 0, to the next one
     closed_steps: Ints
 
 
 class Search(NamedTuple):
-    """Scratch of a search; an entry counts only if its mark equals the current stamp.
+    """Scratch of a search; an entry counts only if its mark equals the current stamp."""
 
-    Attributes
-    ----------
-    best : (n + 2,) the cost of the cheapest path found so far to each node: its length in squares, unless biased.
-    arrival : (n + 2,) the code of the arc by which that path arrives; -1 at the node where the search began.
-    seen : (n + 2,) mark of `best` and `arrival`.
-    node_ban : (n + 2,) mark of nodes that the present search must not enter.
-    arc_ban : (2m + 5,) mark, by code, of arcs that the present search must not use from its origin.
-    goal_distance : (n + 2,) exact distances to the goal, in squares, when filled.
-    nodes : (n + 2,) the nodes of the path from which deviations are sought.
-    key : (2m + 8,) heap: lower bounds of costs.
-    node : (2m + 8,) heap: nodes.
-    stamp : (2,) the current stamp, which grows from search to search; whether `goal_distance` is filled (1 or 0).
-    """
-
+    # (n + 2,) the cost of the cheapest path found so far to each node: its length in squares, unless biased
     best: Floats
-    arrival: Ints
-    seen: Ints
-    node_ban: Ints
-    arc_ban: Ints
-    goal_distance: Floats
-    nodes: Ints
-    key: Floats
-    node: Ints
-    stamp: Ints
+    arrival: Ints  # (n + 2,) the code of the arc by which that path arrives; -1 at the node where the search began
+    seen: Ints  # (n + 2,) mark of `best` and `arrival`
+    node_ban: Ints  # (n + 2,) mark of nodes that the present search must not enter
+    arc_ban: Ints  # (2m + 5,) mark, by code, of arcs that the present search must not use from its origin
+    goal_distance: Floats  # (n + 2,) exact distances to the goal, in squares, when filled
+    nodes: Ints  # (n + 2,) the nodes of the path from which deviations are sought
+    key: Floats  # (2m + 8,) heap: lower bounds of costs
+    node: Ints  # (2m + 8,) heap: nodes
+    stamp: Ints  # (2,) the current stamp, which grows from search to search; whether `goal_distance` is filled (1 or 0)
 
 
 def new_search(nodes: int, chains: int) -> Search:
-    """Return scratch for searches on a pathgraph of that many nodes and chains (its edges), without any search yet.
-
-    It holds, by node, the cost of the best path so far and the arc by which that arrives, bans of nodes and arcs, exact
-    distances to the goal, and a heap. Marks and stamp are 0, all else is arbitrary.
-    """
+    """Return scratch for searches on a pathgraph of that many nodes and chains (its edges), without any search yet."""
     return Search(
         np.empty(nodes + 2),
         np.empty(nodes + 2, np.int32),
@@ -95,28 +72,7 @@ def new_search(nodes: int, chains: int) -> Search:
 
 @bare
 def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, origin: int) -> bool:
-    """Search a path from a node to the goal (A*), and return whether there is one; it is left in `search.arrival`.
-
-    Read it backwards: at each node, from the goal (n + 1) on, stands the arc by which the path arrives. An arc is a
-    chain walked in one direction, coded 2 chain, plus 1 when walked backwards; codes from 2m on (m chains) are those
-    that the query adds.
-
-    Nodes and arcs banned under the current stamp are left out. The path is the shortest, unless the query's line makes
-    arcs costlier: then its cost is at most PATH_SLACK times the least. Its cost is left in `search.best` at the goal. A
-    chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    This is one loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or
-    handing it on, costs more than the arc for which it is used.
-
-    Parameters
-    ----------
-    landmarks : arcs out of each node (node led to, code, length in squares), and the nodes' distances from landmarks,
-        nodes chosen in advance, in squares.
-    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, the line by whose
-        distance arcs get costlier, and which chains are closed.
-    search : `best`, `arrival`, `seen` and `node_ban` are written, the heap is scratch.
-    origin : the number of the node from which to search; the number of nodes, n, is the start.
-    """
+    """Search a path from a node to the goal (A*), and return whether there is one; it is left in `search.arrival`."""
     arc, head, step, place, sight = landmarks.arc, landmarks.head, landmarks.step, landmarks.place, landmarks.sight
     joint, extra, line, goal = query.joint, query.cost, query.line, query.sight
     closed = query.closed
@@ -169,18 +125,7 @@ def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, o
 
 @bare
 def landmark_bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
-    """Return a lower bound of the path length from a node to the goal (end 0) or to the start (end 1), in squares.
-
-    It is the best triangle inequality over the landmarks; 0 when they say nothing, infinite when one of them shows that
-    no path leads there.
-
-    Parameters
-    ----------
-    sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
-    ends : (2, landmarks) the goal's distances from them, and the start's.
-    end : 0 for the goal, 1 for the start.
-    node : the number of the node.
-    """
+    """Return a lower bound of the path length from a node to the goal (end 0) or to the start (end 1), in squares."""
     least = 0.0
     for k in range(sight.shape[1]):
         if sight[node, k] != ends[end, k]:  # not both infinite
@@ -191,21 +136,8 @@ def landmark_bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
 
 @bare
 def fill_goal_distances(landmarks: Landmarks, query: RouteQuery, search: Search, limit: float) -> None:
-    """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards.
-
-    Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity. The second entry of
-    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph (whose nodes are
-    the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    landmarks : arcs out of each node (node led to, code, length in squares), and the nodes' distances from landmarks,
-        nodes chosen in advance, in squares.
-    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, and which chains
-        are closed.
-    search : changed; its heap is scratch.
-    limit : in squares; infinite for all nodes.
-    """
+    """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards."""
+    # The second entry of `search.stamp` is set, so that searches use these distances.
     arc, head, step, sight = landmarks.arc, landmarks.head, landmarks.step, landmarks.sight
     joint, cost, ends, closed = query.joint, query.cost, query.sight, query.closed
     goal_distance, key, spot = search.goal_distance, search.key, search.node

@@ -23,55 +23,29 @@ from geometry.skeleton.skeleton import steepest, stride
 
 
 class Barrier(NamedTuple):
-    """The floor of a layer, cut along the necks of passages.
+    """The floor of a layer, cut along the necks of passages."""
 
-    A step leads from the centre of a square to that of an edge neighbour. It is cut when a neck crosses it.
-
-    Attributes
-    ----------
-    label : (rows + 2, columns + 2) int32, the number of the part of each cell, from 1; 0 on a cut and off the floor.
-    closed : (2, rows + 2, columns + 2) bool, whether the step from each cell to the east (0) or to the north (1) is
-        cut.
-    closed_steps : (b, 2) int32, chain and position of the pathgraph's steps that are cut: each from the cell at that
-        position on the chain, counted from 0, to the next one.
-    """
-
+    # (rows + 2, columns + 2) int32, the number of the part of each cell, from 1; 0 on a cut and off the floor
     label: Labels
+    # (2, rows + 2, columns + 2) bool, whether the step from each cell to the east (0) or to the north (1) is cut
     closed: Bools
+    # (b, 2) int32, chain and position of the pathgraph's steps that are cut: each from the cell at that position on the
+    # chain, counted from 0, to the next one
     closed_steps: Ints
 
     def separates(self, one: int, other: int) -> bool:
-        """Return whether two cells (indices in the flat padded grid) lie in different parts, or one on a cut.
-
-        `one` is never separated from itself. A cell's index is (row + 1) * width + column + 1, with width = columns +
-        2.
-        """
+        """Return whether two cells (indices in the flat padded grid) lie in different parts, or one on a cut."""
         label = self.label.reshape(-1)
         return bool(one != other and (label[one] != label[other] or not label[one]))
 
     def is_closed(self, cell: int, other: int) -> bool:
-        """Return whether the step between two edge neighbours is cut, in either direction.
-
-        `cell` and `other` are indices in the flat padded grid, (row + 1) * width + column + 1.
-        """
+        """Return whether the step between two edge neighbours is cut, in either direction."""
         low = min(cell, other)
         return bool(self.closed[int(abs(cell - other) > 1)].reshape(-1)[low])
 
 
 def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barrier:
-    """Return the floor of a layer, cut along the necks of passages.
-
-    It holds `label`, (rows + 2, columns + 2), the number of the part of each padded cell, from 1 (0 on a cut and off
-    the floor); `closed`, (2, rows + 2, columns + 2) bool, whether the step from a cell to the east (0) or north (1) is
-    cut; and `closed_steps`, (b, 2), chain and position of the steps of the pathgraph that are cut.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    level : the least squared clearance of a cell where the body may be, in squared half squares.
-    passages : those along whose mouths (straight lines from wall to wall) the floor is cut; with none, only what is not
-        connected is told apart.
-    """
+    """Return the floor of a layer, cut along the necks of passages."""
     label, closed = cut_floor(layer.square >= level, passages)
     width, states = layer.square.shape[1], layer.state.reshape(-1)
     closed_steps = []
@@ -83,17 +57,7 @@ def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barr
 
 
 def chain_step_of(layer: Layer, cell: int, other: int) -> tuple[int, int]:
-    """Return the chain of a step of the skeleton between two cells, and the lower of the two positions on it.
-
-    Positions count the cells of the chain from 0 at its first cell. A chain is an edge of the pathgraph (whose nodes
-    are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    cell, other : edge neighbours on the skeleton, linked to each other; indices in the flat padded grid, (row + 1) *
-        width + column + 1.
-    """
+    """Return the chain of a step of the skeleton between two cells, and the lower of the two positions on it."""
     states, width, chains = layer.state.reshape(-1), layer.square.shape[1], layer.chains
     if is_node(states[cell]) and is_node(states[other]):
         return int(chains.leave[find(chains.node, cell), direction_of(other - cell)]), 0
@@ -105,19 +69,8 @@ def chain_step_of(layer: Layer, cell: int, other: int) -> tuple[int, int]:
 
 
 def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> list[int] | None:
-    """Return the cells from a cell to the skeleton of its part: the steepest ascent if no step of it is cut.
-
-    Otherwise the fewest cells over steps that are not cut; None when there are none. Cells are indices in the flat
-    padded grid, (row + 1) * width + column + 1, the given one first and a cell of the skeleton last; a cell of the
-    skeleton gives itself alone.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    level : the least squared clearance of a cell where the body may be, in squared half squares.
-    barrier : the floor cut along passages: the part of each cell, and which steps between cells are cut.
-    cell : a cell where the body may be.
-    """
+    """Return the cells from a cell to the skeleton of its part: the steepest ascent if no step of it is cut."""
+    # None when there are none.
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
     cells = [cell]
     while not states[cells[-1]]:
@@ -129,19 +82,7 @@ def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> l
 
 
 def path_over_cells(layer: Layer, level: int, barrier: Barrier, cell: int, goal: Bools) -> list[int] | None:
-    """Return the fewest cells from a cell to a goal cell over steps that are not cut; None when there is no path.
-
-    Both ends are included; a goal cell gives itself alone. Cells are indices in the flat padded grid, (row + 1) * width
-    + column + 1.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    level : the least squared clearance of a cell where the body may be, in squared half squares.
-    barrier : the floor cut along passages: the part of each cell, and which steps between cells are cut.
-    cell : the cell at which the path begins.
-    goal : (cells,) bool, True at goal cells, flat over the padded grid.
-    """
+    """Return the fewest cells from a cell to a goal cell over steps that are not cut; None when there is no path."""
     heights, width = layer.square.reshape(-1), layer.square.shape[1]
     came, queue = {cell: cell}, deque([cell])
     while queue:

@@ -30,38 +30,25 @@ DROPPED = -1  # the cell of a link that was dropped from its path
 
 
 class Lifted(NamedTuple):
-    """A path over the skeleton.
+    """A path over the skeleton."""
 
-    Attributes
-    ----------
-    lowest : the least squared clearance on it, its ends included, in squared half squares.
-    chains : the numbers of the chains (edges of the pathgraph) that it follows, in order; empty when it follows none.
-    """
-
-    lowest: int
+    lowest: int  # the least squared clearance on it, its ends included, in squared half squares
+    # The numbers of the chains (edges of the pathgraph) that it follows, in order; empty when it follows none
     chains: tuple[int, ...]
 
 
 class Trail(NamedTuple):
-    """A path as a linked list of cells, each an edge neighbour of the one before; link 0 is the start, link 1 the goal.
+    """A path as a linked list of cells, each an edge neighbour of the one before."""
 
-    Attributes
-    ----------
-    cell : (room,) the padded cell of each link (index in the flat padded grid, (row + 1) * width + column + 1), or
-        DROPPED.
-    before : (room,) the number of the link before, DROPPED at the start.
-    after : (room,) the number of the link after, DROPPED at the goal.
-    queue : (room,) numbers of links to examine.
-    queued : (room,) 1 when a link is in the queue, else 0.
-    counts : (2,) how many links were ever made, and how many are in the queue.
-    """
+    # Link 0 is the start, link 1 the goal.
 
+    # (room,) the padded cell of each link (index in the flat padded grid, (row + 1) * width + column + 1), or DROPPED
     cell: Ints
-    before: Ints
-    after: Ints
-    queue: Ints
-    queued: Ints
-    counts: Ints
+    before: Ints  # (room,) the number of the link before, DROPPED at the start
+    after: Ints  # (room,) the number of the link after, DROPPED at the goal
+    queue: Ints  # (room,) numbers of links to examine
+    queued: Ints  # (room,) 1 when a link is in the queue, else 0
+    counts: Ints  # (2,) how many links were ever made, and how many are in the queue
 
 
 def new_trail(room: int) -> Trail:
@@ -71,26 +58,7 @@ def new_trail(room: int) -> Trail:
 
 
 def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
-    """Return the one path over the skeleton, without turning back, of the class of a reduced word.
-
-    A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
-    squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; both in squares
-        where the body may be.
-    word : signed portals from the start's strip to the goal's, negative when crossed southwards.
-    trail : scratch from an earlier call; None for new scratch.
-
-    Returns
-    -------
-    (Lifted, Trail)
-        The path: its least squared clearance, in squared half squares, ends included, and the numbers of the chains
-        (edges of the pathgraph) that it follows, in order. Then the scratch that was used, to be given to the next
-        call.
-    """
+    """Return the one path over the skeleton, without turning back, of the class of a reduced word."""
     trail = trail or new_trail(4 * len(word) + 1024)
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
     while (size := lift_word(heights, states, width, layer.chains, layer.runs, ends, word, trail)) == TRAIL_OVERFLOW:
@@ -103,23 +71,9 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 def lift_word(
     heights: Heights, states: Flags, width: int, chains: Chains, strips: Strips, ends: Ends, word: Ints, trail: Trail
 ) -> int:
-    """Write the least squared clearance and the chains of a word's path over the skeleton to the trail's queue.
-
-    Return how many numbers these are (the clearance first, then the numbers of the chains in order), or TRAIL_OVERFLOW
-    when there is no room. A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an
-    edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    heights : (cells,) squared clearances in squared half squares, flat and padded.
-    states : (cells,) links and flags of the skeleton, 0 off it.
-    width : columns of the padded grid.
-    chains : the edges of the pathgraph, with their nodes and cells.
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
-    trail : scratch; the answer stands at the beginning of its `queue`.
-    """
+    """Write the least squared clearance and the chains of a word's path over the skeleton to the trail's queue."""
+    # Return how many numbers these are (the clearance first, then the numbers of the chains in order), or
+    # TRAIL_OVERFLOW when there is no room.
     if (
         write_cells_of_word(strips, ends, word, width, trail) == TRAIL_OVERFLOW
         or raise_to_skeleton(heights, width, trail) == TRAIL_OVERFLOW
@@ -145,11 +99,7 @@ def lift_word(
 
 @bare
 def direction_of(step: int) -> int:
-    """Return the direction of an index step between edge neighbours: 0 east, 1 north, 2 west, 3 south.
-
-    `step` is the difference of their indices in the flat padded grid, (row + 1) * width + column + 1: 1, the grid's
-    width, or one of these negated.
-    """
+    """Return the direction of an index step between edge neighbours: 0 east, 1 north, 2 west, 3 south."""
     if step == 1 or step == -1:
         return 1 - step
     return 1 if step > 0 else 3
@@ -157,19 +107,8 @@ def direction_of(step: int) -> int:
 
 @bare
 def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
-    """Write the cells of a path with this word as a linked list, and return the number of links.
-
-    The path goes along each strip to the nearest square of the next portal. Link 0 is the start, link 1 the goal; those
-    between are numbered from 2 in order. Return TRAIL_OVERFLOW (-1) when there is no room. All links are queued.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
-    width : columns of the padded grid.
-    trail : the linked list, written: the cell of each link, the links before and after it, and the queue.
-    """
+    """Write the cells of a path with this word as a linked list, and return the number of links."""
+    # Link 0 is the start, link 1 the goal; those between are numbered from 2 in order.
     cell, before, after, queue, queued, counts = trail
     left, right = strips.left, strips.right
     row, column, last, new = int(ends[1]), int(ends[0]), 0, 2
@@ -205,18 +144,7 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
 
 @bare
 def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
-    """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more.
-
-    All links ever made count, dropped ones too. The path is read from link 0 along `after`.
-
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
-
-    Parameters
-    ----------
-    heights : (cells,) squared clearances in squared half squares, flat and padded.
-    width : columns of the padded grid.
-    trail : the path as a linked list of cells, with all its links queued; changed, its queue is empty afterwards.
-    """
+    """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more."""
     cell, before, after, queue, queued, counts = trail
     while counts[1] > 0:
         counts[1] -= 1
@@ -237,21 +165,7 @@ def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
 
 @bare
 def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link: int, forward: bool) -> None:
-    """Lead the step from a link to a higher one over the highest edge neighbour of its group.
-
-    A group is a connected part of the higher cells on the ring of a cell's eight neighbours; a cell is higher when its
-    clearance is greater, or as great and its index greater. Nothing changes when the
-    other link is not higher, or is that highest neighbour. A cell's index is (row + 1) * width + column + 1, with width
-    = columns + 2.
-
-    Parameters
-    ----------
-    heights : (cells,) squared clearances in squared half squares, flat and padded.
-    width : columns of the padded grid.
-    trail : the path as a linked list of cells; links are inserted and queued.
-    link, next_link : numbers of two links that follow each other.
-    forward : whether `next_link` comes after `link` on the path.
-    """
+    """Lead the step from a link to a higher one over the highest edge neighbour of its group."""
     cell = trail.cell
     here, there = 0 + cell[link], 0 + cell[next_link]
     if here == there or not above(there, here, heights):
@@ -282,17 +196,7 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
 
 @bare
 def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: bool) -> int:
-    """Put a cell between two links of a path, queue it, and return the number of its link.
-
-    It gets the next free number; the numbers of other links stay as they are.
-
-    Parameters
-    ----------
-    trail : the path as a linked list of cells; changed.
-    cell : index in the flat padded grid, (row + 1) * width + column + 1.
-    last, next_link : numbers of the two links.
-    forward : whether `next_link` comes after `last` on the path.
-    """
+    """Put a cell between two links of a path, queue it, and return the number of its link."""
     new = 0 + trail.counts[0]
     trail.counts[0] += 1
     trail.cell[new], trail.queued[new] = cell, 0
@@ -306,11 +210,7 @@ def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: boo
 
 @bare
 def drop_spur(trail: Trail, link: int) -> None:
-    """Drop a link that is left as it was reached, with one of its two neighbours, which are the same cell.
-
-    `trail` is changed: both cells become DROPPED, and the links that then meet are queued. Start and goal are never
-    dropped: when they are the two neighbours, they become the whole path. `link` is the number of the link.
-    """
+    """Drop a link that is left as it was reached, with one of its two neighbours, which are the same cell."""
     cell, before, after = trail.cell, trail.before, trail.after
     first, last = 0 + before[link], 0 + after[link]
     cell[link] = DROPPED

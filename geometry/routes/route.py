@@ -36,19 +36,7 @@ class Route:
 
 
 def routes_of_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
-    """Return at most `most` of the first `found` routes in a router's answers, shortest first.
-
-    A route holds its corners (x, y) in squares from the screen's south-west corner, both ends included, its length and
-    clearance in squares, its signature (the crossing numbers that name its class), and the chains that it follows.
-    Of routes of one length that found first comes first.
-
-    Parameters
-    ----------
-    answers : the routes as arrays, in the order in which they were found: corners and lengths in squares, crossing
-        numbers, chains, and least squared clearances in squared half squares.
-    found : how many of them are filled in.
-    most : how many routes to return at most.
-    """
+    """Return at most `most` of the first `found` routes in a router's answers, shortest first."""
     bounds = answers.bounds[: found + 1].tolist()
     lengths, lowest = answers.length[:found].tolist(), answers.lowest[:found].tolist()
     corners, crossings, chains = bounds[found]

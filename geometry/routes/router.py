@@ -17,75 +17,40 @@ from geometry.skeleton.skeleton import Flags, Heights, States
 
 
 class RouteAnswers(NamedTuple):
-    """Room for the routes found; what belongs to route k lies between its bounds k and k + 1.
+    """Room for the routes found; what belongs to route k lies between its bounds k and k + 1."""
 
-    Attributes
-    ----------
-    bounds : (room + 1, 3) bounds in `corners`, `crossings` and `chains`: those of route k are from bounds[k] to
-        bounds[k + 1], excluded.
-    corners : (size, 2) corners (x, y) of the routes, in squares from the screen's south-west corner.
-    crossings : (size,) signed crossing numbers of the portals that the routes cross, negative when crossed southwards.
-    chains : (size,) numbers of the chains of the pathgraph.
-    length : (room,) of each route, in squares.
-    lowest : (room,) the least squared clearance on each route's path over the skeleton, in squared half squares.
-    """
-
+    # (room + 1, 3) bounds in `corners`, `crossings` and `chains`: those of route k are from bounds[k] to bounds[k + 1],
+    # excluded
     bounds: Ints
-    corners: Floats
+    corners: Floats  # (size, 2) corners (x, y) of the routes, in squares from the screen's south-west corner
+    # (size,) signed crossing numbers of the portals that the routes cross, negative when crossed southwards
     crossings: Ints
-    chains: Ints
-    length: Floats
-    lowest: Ints
+    chains: Ints  # (size,) numbers of the chains of the pathgraph
+    length: Floats  # (room,) of each route, in squares
+    lowest: Ints  # (room,) the least squared clearance on each route's path over the skeleton, in squared half squares
 
 
 class RouterBuffers(NamedTuple):
-    """All scratch of a query.
+    """All scratch of a query."""
 
-    Attributes
-    ----------
-    query : the nodes and arcs that the query adds to the pathgraph.
-    search : scratch of A*.
-    store : the paths over the pathgraph.
-    funnel : scratch for pulling a path tight.
-    answers : the routes found.
-    start : (room,) word (signed portals: index plus 1, negative when crossed southwards) from the start up to the
-        skeleton.
-    goal : (room,) word from the goal up to the skeleton.
-    whole : (room,) word from start to goal.
-    stretch : (n + 2, 3) the chains that a path follows, each with the positions (indices of its cells) between which; n
-        is the number of nodes.
-    """
-
-    query: RouteQuery
-    search: Search
-    store: PathStore
-    funnel: Funnel
-    answers: RouteAnswers
+    query: RouteQuery  # the nodes and arcs that the query adds to the pathgraph
+    search: Search  # scratch of A*
+    store: PathStore  # the paths over the pathgraph
+    funnel: Funnel  # scratch for pulling a path tight
+    answers: RouteAnswers  # the routes found
+    # (room,) word (signed portals: index plus 1, negative when crossed southwards) from the start up to the skeleton
     start: Ints
-    goal: Ints
-    whole: Ints
+    goal: Ints  # (room,) word from the goal up to the skeleton
+    whole: Ints  # (room,) word from start to goal
+    # (n + 2, 3) the chains that a path follows, each with the positions (indices of its cells) between which; n is the
+    # number of nodes
     stretch: Ints
 
 
 def new_router_buffers(
     nodes: int, chains: int, landmark_count: int, wanted: int, room: int, closed_steps: Ints
 ) -> RouterBuffers:
-    """Return scratch for a query, with room for its answers; no chain is closed in it.
-
-    It holds the arcs that the query adds to the pathgraph, scratch of the searches, the paths found, words of signed
-    portals, and the routes found as arrays (corners in squares, crossing numbers, chains, lengths).
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
-    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    nodes, chains, landmark_count : the numbers of nodes, chains and landmarks of the pathgraph.
-    wanted : the number of routes, at least 1.
-    room : symbols (signed portals: index plus 1, negative when crossed southwards) of the longest word.
-    closed_steps : (b, 2) chain and position of steps that may not be taken: each from the cell at that position on the
-        chain to the next.
-    """
+    """Return scratch for a query, with room for its answers; no chain is closed in it."""
     query = RouteQuery(
         np.empty(4, np.int32),
         np.empty(5),
@@ -124,53 +89,26 @@ STRAIGHT_ENOUGH = 1.02  # times the straight line: a route no longer than this e
 
 
 class RoutingData(NamedTuple):
-    """Arrays of a layer as the kernels read them, flat where they are read by cell.
+    """Arrays of a layer as the kernels read them, flat where they are read by cell."""
 
-    Attributes
-    ----------
-    heights : (cells,) squared clearances in squared half squares, flat and padded.
-    states : (cells,) links and flags of the skeleton, 0 off it.
-    width : columns of the padded grid; a cell's index is (row + 1) * width + column + 1.
-    chains : the edges of the pathgraph, with their cells.
-    strips : maximal horizontal rows of free squares, and the portals between neighbouring ones.
-    landmarks : words and lengths of the chains, and distances from some nodes.
-    body : True for a body, False for a point.
-    """
-
-    heights: Heights
-    states: Flags
-    width: int
-    chains: Chains
-    strips: Strips
-    landmarks: Landmarks
-    body: bool
+    heights: Heights  # (cells,) squared clearances in squared half squares, flat and padded
+    states: Flags  # (cells,) links and flags of the skeleton, 0 off it
+    width: int  # columns of the padded grid; a cell's index is (row + 1) * width + column + 1
+    chains: Chains  # the edges of the pathgraph, with their cells
+    strips: Strips  # maximal horizontal rows of free squares, and the portals between neighbouring ones
+    landmarks: Landmarks  # words and lengths of the chains, and distances from some nodes
+    body: bool  # True for a body, False for a point
 
 
 def routing_data(layer: Layer) -> RoutingData:
-    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views.
-
-    That is: squared clearances (squared half squares) and states of the skeleton, both flat over the padded grid, the
-    grid's width, and the chains, strips, landmarks and kind (body or point) of the layer.
-    """
+    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views."""
     heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
     return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.landmarks, layer.body)
 
 
 @bare
 def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffers) -> int:
-    """Fill the answers with up to `wanted` tight routes and return their number, or ROUTER_OVERFLOW.
-
-    The routes stand in the order of their paths over the pathgraph, shortest first. When one is wanted, up to three are
-    found: the best paths for several biases, of which the shortest is meant. Return 0 when goal and start are not
-    connected. ROUTER_OVERFLOW says that some scratch is too small.
-
-    Parameters
-    ----------
-    data : the layer's arrays: clearances, states of the skeleton, chains, strips and landmarks.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
-    wanted : how many routes at most, at least 1; the number for which the buffers were made.
-    buffers : scratch; the routes are left in `buffers.answers`.
-    """
+    """Fill the answers with up to `wanted` tight routes and return their number, or ROUTER_OVERFLOW."""
     heights, states, width, chains, strips, landmarks, body = data
     query, store = buffers.query, buffers.store
     rows, up, left = strips.row, strips.up, strips.left
@@ -216,18 +154,7 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 
 @bare
 def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
-    """Close the chains that start and goal split (flag 2), or open them again (flag 0).
-
-    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph
-    (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    closed : (m,) of the query, by chain; changed.
-    start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
-        chain), and cell.
-    flag : 2 to close, 0 to open.
-    """
+    """Close the chains that start and goal split (flag 2), or open them again (flag 0)."""
     if start.node < 0:
         closed[start.chain] = closed[start.chain] & 1 | flag
     if goal.node < 0:
@@ -236,18 +163,7 @@ def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> 
 
 @bare
 def set_bias(line: Floats, ends: Ends, bias: float) -> None:
-    """Set the query's line so that arcs far from the straight line cost more.
-
-    The cost grows by the share `bias` times the distance of the arc's head from the straight line, in lengths of that
-    line.
-
-    Parameters
-    ----------
-    line : (4,) of the query, written: the start (x, y) in squares from the screen's south-west corner, and the scaled
-        normal of the straight line.
-    ends : x and y of the start, x and y of the goal, in squares.
-    bias : the share, without unit; 0 for none, the normal is then 0.
-    """
+    """Set the query's line so that arcs far from the straight line cost more."""
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
     square = dx * dx + dy * dy
     if square < 1.0:
@@ -258,25 +174,9 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
 
 @bare
 def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
-    """Set the nodes and the lengths of the five arcs that link start and goal to the pathgraph; nothing is returned.
-
-    Arcs 0 and 1 lead from the start to the first and to the last node of its chain, arcs 2 and 3 from the first and
-    from the last node of the goal's chain to the goal, and arc 4 from the start to the goal along a chain that both
-    share. An end that lies at a node has its first arc, to that node, of length 0, and no second. When both lie on one
-    chain, the arcs that would pass the other end are closed; when both lie in one cell, arc 4 of length 0 alone is
-    left. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    query : written are `joint`, the node at the other end of arcs 0 to 3 (-1 for none), and `cost`, the lengths of all
-        five in squares (infinite for arcs that there are not). `closed_steps` is read: chain and position of steps that
-        may not be taken; an arc over one of them is infinite.
-    start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
-        chain), and cell.
-    ends : (m, 2) the first and the last node of each chain.
-    starts : (m + 1,) where the cells of each chain begin.
-    length : (m,) of the chains, in squares.
-    """
+    """Set the nodes and the lengths of the five arcs that link start and goal to the pathgraph; nothing is returned."""
+    # When both lie on one chain, the arcs that would pass the other end are closed; when both lie in one cell, arc 4 of
+    # length 0 alone is left.
     joint, cost, closed_steps = query.joint, query.cost, query.closed_steps
     for k in range(2):
         anchor = goal if k else start
@@ -301,20 +201,7 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
 
 @bare
 def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
-    """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step.
-
-    It is 0 from a position to itself.
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    closed_steps : (b, 2) chain and position of steps that may not be taken, each to the next position.
-    starts : (m + 1,) where the cells of each chain begin.
-    length : (m,) of the chains, in squares.
-    chain : the number of the chain.
-    begin, end : positions on it, indices of its cells from 0, in either order.
-    """
+    """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step."""
     low, high = (begin, end) if begin < end else (end, begin)
     for k in range(closed_steps.shape[0]):
         if closed_steps[k, 0] == chain and low <= closed_steps[k, 1] < high:
@@ -324,15 +211,7 @@ def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int,
 
 @bare
 def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
-    """Write the distances of goal and start from the landmarks to `out`, in squares.
-
-    Parameters
-    ----------
-    joint : (4,) the nodes to which the start's two arcs lead (0, 1) and from which the goal's two come (2, 3).
-    cost : (5,) the lengths of these arcs, and of that from start to goal, in squares; infinite where there is none.
-    sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
-    out : (2, landmarks) written: the goal's (row 0) and the start's (row 1); infinite where no arc leads to a node.
-    """
+    """Write the distances of goal and start from the landmarks to `out`, in squares."""
     for k in range(sight.shape[1]):
         for end in range(2):
             least = np.inf
@@ -346,21 +225,7 @@ def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) ->
 def write_stretches(
     ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints
 ) -> int:
-    """Write the chains that a path follows and the positions between which, and return their number.
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    ends : (m, 2) the first and the last node of each chain.
-    starts : (m + 1,) where the cells of each chain begin.
-    arcs : (room, longest) arc codes of paths (2 chain, plus 1 when walked backwards; see astar.py).
-    row, size : the path's row there, and its number of arcs.
-    start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
-        chain), and cell.
-    out : (n, 3) written from row 0 on: chain, first and last position, in the order of the path; positions are indices
-        of the chain's cells from 0. Arcs without length, at an end that lies at a node, are left out.
-    """
+    """Write the chains that a path follows and the positions between which, and return their number."""
     first, used = 2 * ends.shape[0], 0
     for k in range(size):
         code = arcs[row, k]
@@ -387,17 +252,7 @@ def write_stretches(
 
 @bare
 def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
-    """Return whether a path follows the same chains, in the same order, as one of the routes written.
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    bounds, chains : of the answers: which chains the routes follow.
-    written : the number of routes written.
-    stretch : (n, 3) the path's chains, in column 0.
-    steps : how many rows of `stretch` count.
-    """
+    """Return whether a path follows the same chains, in the same order, as one of the routes written."""
     for route in range(written):
         first = bounds[route, 2]
         same = steps == bounds[route + 1, 2] - first
@@ -412,19 +267,7 @@ def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: 
 def lowest_square_on(
     starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int
 ) -> int:
-    """Return the least squared clearance on a path, at most `lowest`, in squared half squares.
-
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph
-    (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    starts, cells, neck : of the chains: where the cells of each begin, the cells, and the index of its lowest cell.
-    heights : (cells,) squared clearances in squared half squares, flat and padded.
-    stretch : (n, 3) the path's chains, and the positions between which, in either order.
-    steps : how many rows of `stretch` count.
-    lowest : the least squared clearance elsewhere, at the ends; returned when no cell of the path is lower.
-    """
+    """Return the least squared clearance on a path, at most `lowest`, in squared half squares."""
     for k in range(steps):
         chain = stretch[k, 0]
         low, high = stretch[k, 1], stretch[k, 2]
@@ -450,21 +293,7 @@ def write_word(
     fallen: int,
     word: Ints,
 ) -> int:
-    """Write the reduced word of a path from start to goal, and return its size.
-
-    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph (whose
-    nodes are the junctions and ends of the skeleton), with its cells. A word is reduced when no symbol stands next to
-    its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    starts : (m + 1,) where the cells of each chain begin.
-    landmarks : the words of the chains.
-    rise, risen : the word (signed portals) from the start up to the skeleton, and its size.
-    stretch, steps : the chains that the path follows and the positions between which, (n, 3), and their number.
-    fall, fallen : the word from the goal up to the skeleton, and its size; it is appended backwards.
-    word : written: signed portals, negative when crossed southwards.
-    """
+    """Write the reduced word of a path from start to goal, and return its size."""
     symbol, words, spelt = landmarks.symbol, landmarks.word, landmarks.spelt
     size = add_word(rise, 0, risen, False, word, 0)
     for k in range(steps):
@@ -489,22 +318,7 @@ def write_route(
     answers: RouteAnswers,
     k: int,
 ) -> bool:
-    """Pull a word tight and write it as the k-th route; return False when there is no room.
-
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    body : True for a body, which keeps to the lines between centres of squares; False for a point.
-    word, size : signed portals (index plus 1, negative when crossed southwards) from start to goal, and their number.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    funnel : scratch, of the same room as `word`.
-    stretch, steps : the chains that the path follows, in column 0, and their number.
-    answers : written, but for `lowest`: corners (squares), crossing numbers, chains and length (squares) of route k,
-        behind those of the routes before it, and the bounds behind it.
-    k : the number of the route, from 0; those before it must be written.
-    """
+    """Pull a word tight and write it as the k-th route; return False when there is no room."""
     bounds, line, crossings, chains = answers.bounds, answers.corners, answers.crossings, answers.chains
     corner, crossing, chain = bounds[k, 0], bounds[k, 1], bounds[k, 2]
     room, needed = line.shape[0] - corner, 4 * size + 8

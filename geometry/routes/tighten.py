@@ -13,22 +13,7 @@ from geometry.routes.route import Route
 
 
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:
-    """Return the tight route of a reduced word: the shortest of its class.
-
-    Its points are (x, y) in squares from the screen's south-west corner, both ends included; its length is in squares,
-    its signature made of the crossing numbers of the word.
-    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A word
-    is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free squares)
-    in neighbouring rows.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : signed portals from the start's strip to the goal's, negative when crossed southwards.
-    clearance, chains : what the route says of its path over the skeleton: the least clearance in squares (nan when not
-        known), and the numbers of its chains. They are passed on as they are.
-    """
+    """Return the tight route of a reduced word: the shortest of its class."""
     strips, line = layer.runs, np.empty((4 * len(word) + 8, 2))
     corners = tighten_word(
         strips.left, strips.right, strips.line, layer.body, word, len(word), ends, new_funnel(len(word)), line
@@ -39,24 +24,7 @@ def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: 
 
 
 def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> Ints | None:
-    """Return the reduced word of the class with these crossing numbers; None when start and goal are not connected.
-
-    The word is (n,) int32: signed portals from the start's strip to the goal's, negative when crossed southwards. A
-    word is reduced when no symbol stands next to its negative.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; both in free
-        squares.
-    crossings : signed crossing numbers of portals (from 1, negative when crossed southwards), in order; empty for the
-        class without any.
-
-    Raises
-    ------
-    ValueError
-        When there is no such crossing number, or none that can be reached.
-    """
+    """Return the reduced word of the class with these crossing numbers; None when start and goal are not connected."""
     strip = strip_at(strips.row, strips.low, int(ends[1]), int(ends[0]))
     goal = strip_at(strips.row, strips.low, int(ends[3]), int(ends[2]))
     forest = build_forest(strips)
@@ -79,12 +47,7 @@ def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> I
 
 
 def build_forest(strips: Strips) -> Ints:
-    """Return for each strip the signed portal towards the first strip of its component, (n,) int32; 0 at that strip.
-
-    The first strip is that of the least number. Only portals without a crossing number are used: in each component
-    of the `strips` they form a tree. A signed portal is a portal's index plus 1, negative when it is crossed
-    southwards. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-    """
+    """Return for each strip the signed portal towards the first strip of its component, (n,) int32; 0 at that strip."""
     links: list[list[tuple[int, int]]] = [[] for _ in range(len(strips.low))]
     for portal in np.flatnonzero(strips.crossing == 0).tolist():
         links[strips.lower[portal]].append((int(strips.upper[portal]), -portal - 1))
@@ -104,18 +67,7 @@ def build_forest(strips: Strips) -> Ints:
 
 
 def word_in_forest(strips: Strips, forest: Ints, strip: int, goal: int) -> Ints | None:
-    """Return the reduced word from one strip to another over the forest; None when they are not connected.
-
-    The word is (n,) int32 of signed portals (index plus 1, negative when crossed southwards), empty from a strip to
-    itself. A word is reduced when no symbol stands next to its negative.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    forest : (strips,) for each strip the signed portal (of those without a crossing number) towards the first strip of
-        its component; 0 at that strip.
-    strip, goal : numbers of the strips.
-    """
+    """Return the reduced word from one strip to another over the forest; None when they are not connected."""
     up, top = word_to_root(strips, forest, strip)
     down, other = word_to_root(strips, forest, goal)
     if top != other:
@@ -124,17 +76,7 @@ def word_in_forest(strips: Strips, forest: Ints, strip: int, goal: int) -> Ints 
 
 
 def word_to_root(strips: Strips, forest: Ints, strip: int) -> tuple[list[int], int]:
-    """Return the word from a strip to the first strip of its component, and that strip.
-
-    The word is a list of signed portals (index plus 1, negative when crossed southwards), empty for that strip itself.
-
-    Parameters
-    ----------
-    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    forest : (strips,) for each strip the signed portal (of those without a crossing number) towards the first strip of
-        its component; 0 at that strip.
-    strip : the number of the strip.
-    """
+    """Return the word from a strip to the first strip of its component, and that strip."""
     word: list[int] = []
     while forest[strip]:
         symbol = int(forest[strip])

@@ -36,21 +36,7 @@ MAX_UNKNOWN_RIM = 2  # squares; how far a whole shape may reach into unknown squ
 
 @compiled
 def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
-    """Return the best shape of a class with whole corners and sides along the axes, and how many squares are wrong.
-
-    Parameters
-    ----------
-    kind : one of the classes of misfit (SQUARE_CLASS ... DISC_CLASS).
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-
-    Returns
-    -------
-    (PARAMETER_COUNT,) float64, the numbers of the shape; and the count of known squares that it gets wrong. Of equally
-    good shapes the first tried. The numbers of a shape are, in squares of the image (origin at the lower left corner of
-    square [0, 0], x along columns) and radians: angle, centre x and y, width, height, thickness, thickness of an L's
-    stem or 0; of a triangle three corners x, y and 0; of a disc centre x, y, radius and zeros. Zeros and infinity when
-    there is no such shape, as for every disc.
-    """
+    """Return the best shape of a class with whole corners and sides along the axes, and how many squares are wrong."""
     best, at = math.inf, np.zeros(PARAMETER_COUNT)
     if kind == DISC_CLASS:
         return at, best
@@ -71,11 +57,7 @@ def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
 
 @compiled
 def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
-    """Return south, north, west, east of the squares of one state: first, and one beyond the last.
-
-    Rows and columns of the image, row 0 in the south. 1000000, -1000000, 1000000, -1000000 when no square has the
-    state.
-    """
+    """Return south, north, west, east of the squares of one state: first, and one beyond the last."""
     south, north, west, east = 10**6, -(10**6), 10**6, -(10**6)
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
@@ -89,19 +71,8 @@ def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
 def _whole_rectangles(
     kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float
 ) -> tuple[Floats, float]:
-    """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong.
-
-    All four directions are tried. The numbers of the shape are angle (radians), centre x and y, width, height,
-    thickness, and the stem of an L with arms of two widths, else 0; squares of the image. If none gets fewer than
-    `limit` squares wrong: zeros, and infinity or, for an L, `limit`.
-
-    Parameters
-    ----------
-    kind : SQUARE_CLASS, BRICK_CLASS, ELL_CLASS, TEE_CLASS or HORSESHOE_CLASS.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    west, south, east, north : sides of the rectangle, squares of the image.
-    limit : number of wrong squares to be beaten.
-    """
+    """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong."""
+    # If none gets fewer than `limit` squares wrong: zeros, and infinity or, for an L, `limit`.
     best, at = limit, np.zeros(PARAMETER_COUNT)
     width, height = east - west, north - south
     if kind == SQUARE_CLASS and width != height:
@@ -124,19 +95,8 @@ def _whole_rectangles(
 def _whole_uneven_ell(
     image: Image, west: int, south: int, east: int, north: int, limit: float, shape: Floats
 ) -> tuple[Floats, float]:
-    """Return the best L with arms of two widths that just fits in a rectangle, if it is better than a shape.
-
-    The result is (numbers, wrong squares); otherwise `shape` and `limit` are returned. Its notch is at least MIN_NOTCH
-    squares long and wide: the image of a turned rectangle may lack a square or two of a row at a corner.
-
-    Parameters
-    ----------
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    west, south, east, north : sides of the rectangle, squares of the image.
-    limit : number of squares that `shape` gets wrong, to be beaten.
-    shape : (PARAMETER_COUNT,) numbers of a shape: angle (radians), centre x, y, width, height, thickness, stem or 0,
-        squares.
-    """
+    """Return the best L with arms of two widths that just fits in a rectangle, if it is better than a shape."""
+    # The result is (numbers, wrong squares); otherwise `shape` and `limit` are returned.
     best, at = limit, shape
     for quarter in range(4):
         a, b = (east - west, north - south) if quarter % 2 == 0 else (north - south, east - west)
@@ -153,17 +113,7 @@ def _whole_uneven_ell(
 
 @compiled
 def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, limit: float) -> tuple[Floats, float]:
-    """Return the best triangle with a side on a rectangle's side and a whole corner on the opposite one.
-
-    Right-angled ones are tried first, then those with two equal sides, then the rest; of equally good ones the first is
-    returned, with the number of squares that it gets wrong. Zeros and infinity if none gets fewer than `limit` wrong.
-
-    Parameters
-    ----------
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    west, south, east, north : sides of the rectangle, squares of the image.
-    limit : number of wrong squares to be beaten.
-    """
+    """Return the best triangle with a side on a rectangle's side and a whole corner on the opposite one."""
     best, at = limit, np.zeros(PARAMETER_COUNT)
     for turn in range(3):
         for side in range(4):
@@ -186,22 +136,7 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 
 @compiled
 def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
-    """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong.
-
-    Parameters
-    ----------
-    kind : one of the classes of misfit (SQUARE_CLASS ... DISC_CLASS).
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south; a square must be occupied.
-
-    Returns
-    -------
-    (PARAMETER_COUNT,) float64, the numbers of the shape; and the count of known squares that it gets wrong, one more
-    for a shape that is no proper one of its class (arms or sides too short). An L with arms of two widths is returned
-    only if it gets more than UNEVEN_CREDIT squares fewer wrong. The numbers of a shape are, in squares of the image
-    (origin at the lower left corner of square [0, 0], x along columns) and radians: angle, centre x and y, width,
-    height, thickness, thickness of an L's stem or 0; of a triangle three corners x, y and 0; of a disc centre x, y,
-    radius and zeros.
-    """
+    """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong."""
     free, starts = initial_steps(kind), _starts(kind, image)
     at, best = _best_descended(kind, starts, free, image)
     if kind == ELL_CLASS and best > 0.0:  # perhaps with arms of two widths
@@ -215,21 +150,7 @@ def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
 
 @compiled
 def _best_descended(kind: int, starts: Floats, free: Floats, image: Image) -> tuple[Floats, float]:
-    """Return the best shape that descents from the best starts reach, and how many squares are wrong.
-
-    Parameters
-    ----------
-    kind : one of the classes of misfit.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    starts : (n, PARAMETER_COUNT) numbers of shapes, squares and radians, n at least 1; not changed. Descents begin at
-        the DESCENT_STARTS of least disagreement.
-    free : (PARAMETER_COUNT,) how far each number is moved at first; 0 where it stays.
-
-    Returns
-    -------
-    (PARAMETER_COUNT,) numbers, and a count, one more for a shape that is no proper one of its class. Of equally good
-    shapes that of least disagreement.
-    """
+    """Return the best shape that descents from the best starts reach, and how many squares are wrong."""
     losses = np.empty(len(starts))
     for k in range(len(starts)):
         losses[k] = disagreement(kind, starts[k], image)
@@ -253,17 +174,9 @@ def _best_descended(kind: int, starts: Floats, free: Floats, image: Image) -> tu
 
 @compiled
 def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float]:
-    """Return the disc near one, at places and radii in fine steps, with the fewest wrong squares, and their number.
-
-    The disc of least disagreement may get several squares wrong by very little, because the rim of a wide disc passes
-    many corners of squares. Of equally good discs that of least disagreement is returned.
-
-    Parameters
-    ----------
-    disc : (PARAMETER_COUNT,) centre x, y and radius, in squares of the image.
-    wrong : number of squares that it gets wrong.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    """
+    """Return the disc near one, at places and radii in fine steps, with the fewest wrong squares, and their number."""
+    # The disc of least disagreement may get several squares wrong by very little, because the rim of a wide disc passes
+    # many corners of squares.
     best, at, least = wrong, disc, disagreement(DISC_CLASS, disc, image)
     for i in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
         for j in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
@@ -282,10 +195,7 @@ def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, flo
 
 @compiled
 def initial_steps(kind: int) -> Floats:
-    """Return how far each number of a class is moved at first in a descent, (PARAMETER_COUNT,); 0 where it stays.
-
-    In squares, of an angle in radians. `kind` : one of the classes of misfit.
-    """
+    """Return how far each number of a class is moved at first in a descent, (PARAMETER_COUNT,); 0 where it stays."""
     if kind == DISC_CLASS:
         return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0])
     if kind == TRIANGLE_CLASS:
@@ -300,12 +210,7 @@ def initial_steps(kind: int) -> Floats:
 
 @compiled
 def _starts(kind: int, image: Image) -> Floats:
-    """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), float64.
-
-    One for each of some angles and thicknesses; a single one for discs. Sorted by angle, then thickness. The numbers of
-    a shape are in squares of the image and radians. `kind` : one of the classes of misfit. `image` : (rows, columns) of
-    IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    """
+    """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), float64."""
     if kind == DISC_CLASS:
         return _start_disc(image)
     thickness_count = 3 if kind >= ELL_CLASS and kind <= HORSESHOE_CLASS else 1
@@ -320,11 +225,7 @@ def _starts(kind: int, image: Image) -> Floats:
 
 @compiled
 def _start_disc(image: Image) -> Floats:
-    """Return a disc about the mean of the occupied squares, of nearly their area, (1, PARAMETER_COUNT).
-
-    Centre x, y and radius in squares of the image, then zeros. `image` : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED,
-    IMAGE_UNKNOWN, row 0 in the south. At least one square must be occupied.
-    """
+    """Return a disc about the mean of the occupied squares, of nearly their area, (1, PARAMETER_COUNT)."""
     x = y = 0.0
     count = 0
     for row in range(image.shape[0]):
@@ -341,22 +242,7 @@ def _start_disc(image: Image) -> Floats:
 
 @compiled
 def _write_start(kind: int, image: Image, angle: float, thickness: float, out: Floats) -> None:
-    """Write a shape in one direction to `out`, (PARAMETER_COUNT,), its sizes read off the extent of the squares.
-
-    The numbers are angle (radians), centre x and y, width, height and thickness, or three corners x, y of a triangle,
-    in squares of the image; further numbers are left alone.
-
-    A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
-    little less than that is taken off.
-
-    Parameters
-    ----------
-    kind : any class but DISC_CLASS.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south. At least one square must
-        be occupied.
-    angle : direction in radians, counter-clockwise from the east.
-    thickness : of the arms, squares; written even for classes without arms, but not for triangles.
-    """
+    """Write a shape in one direction to `out`, (PARAMETER_COUNT,), its sizes read off the extent of the squares."""
     c, s = math.cos(angle), math.sin(angle)
     u0, u1, v0, v1, tip = 1e9, -1e9, 1e9, -1e9, 0.0
     for row in range(image.shape[0]):

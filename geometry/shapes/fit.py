@@ -105,31 +105,17 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 
 
 class _Candidate(NamedTuple):
-    """The best shape of a class for an image, and the number of squares that it gets wrong.
+    """The best shape of a class for an image, and the number of squares that it gets wrong."""
 
-    Attributes
-    ----------
-    name : as Fit.shape.
-    kind : the class as misfit numbers it.
-    shape : (PARAMETER_COUNT,) its numbers, as in misfit, in squares of the image.
-    wrong : count of known squares that it gets wrong.
-    whole : whether it has whole corners, as Fit.whole.
-    """
-
-    name: str
-    kind: int
-    shape: Floats
-    wrong: int
-    whole: bool
+    name: str  # as Fit.shape.
+    kind: int  # the class as misfit numbers it
+    shape: Floats  # (PARAMETER_COUNT,) its numbers, as in misfit, in squares of the image
+    wrong: int  # count of known squares that it gets wrong
+    whole: bool  # whether it has whole corners, as Fit.whole.
 
 
 def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
-    """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong.
-
-    It holds the class, the numbers of the shape (squares of the image, radians), the count of squares it gets wrong and
-    whether it has whole corners. `name`, `kind` : the class by name and by number. `image` : (rows, columns) of
-    IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    """
+    """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong."""
     shape, wrong = best_whole_shape(kind, image)
     if wrong > 0:
         other, worse = best_turned_shape(kind, image)
@@ -139,16 +125,7 @@ def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
 
 
 def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_Candidate]:
-    """Return shapes that agree equally well, whole ones first, then by likelihood; one for each of `ties`.
-
-    A turned shape that gets no square wrong is replaced by the mean of all such shapes of its class. A disc comes first
-    where the first whole shape is an L with a slight notch and no square is unknown.
-
-    Parameters
-    ----------
-    ties : the shapes, of different classes, all with the same number of wrong squares.
-    image : the image that they are fitted to.
-    """
+    """Return shapes that agree equally well, whole ones first, then by likelihood; one for each of `ties`."""
     whole = [one for one in ties if one.whole]
     others = [one for one in ties if not one.whole]
     if len(others) > 1 or (others and not others[0].wrong):
@@ -160,35 +137,14 @@ def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_C
 
 
 def _is_cut_square(candidate: _Candidate) -> bool:
-    """Return whether a shape is an L with a notch as slight as the image of a small disc has.
-
-    `candidate` : the shape; of all classes but an L the answer is False. Its notch is less than MAX_SLIGHT_NOTCH of
-        both sides.
-    """
+    """Return whether a shape is an L with a notch as slight as the image of a small disc has."""
     width, height, thickness = candidate.shape[3:6]
     notch = max((width - misfit.stem_of(candidate.shape)) / width, (height - thickness) / height)
     return candidate.kind == misfit.ELL_CLASS and bool(notch < MAX_SLIGHT_NOTCH)
 
 
 def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, int]:
-    """Return the image cut to the squares that may be the object and a rim, and the column and row of its corner.
-
-    Parameters
-    ----------
-    occupied, possible : (rows, columns) bool, row 0 in the south, squares that are and that may be the object; None for
-        none.
-
-    Returns
-    -------
-    image : (rows, columns) int8 of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south, with a rim of RIM
-        free squares.
-    west, south : column and row, in `occupied`, of the image's square (0, 0); below 0 when the rim reaches out of the
-        array.
-
-    Raises
-    ------
-    ValueError : no square is occupied, or the arrays differ in shape.
-    """
+    """Return the image cut to the squares that may be the object and a rim, and the column and row of its corner."""
     occupied = np.asarray(occupied, bool)
     unknown = np.zeros_like(occupied) if possible is None else np.asarray(possible, bool)
     if occupied.ndim != 2 or unknown.shape != occupied.shape or not occupied.any():
@@ -205,13 +161,7 @@ def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, 
 
 
 def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
-    """Return a candidate as a Fit, in the squares of the whole array.
-
-    Its polygon has its origin at the lower left corner of square (0, 0) of the array; sizes in squares, angle in
-    degrees.
-
-    `west`, `south` : column and row there of the image's square (0, 0).
-    """
+    """Return a candidate as a Fit, in the squares of the whole array."""
     polygon = shapely.Polygon(outline(candidate.kind, candidate.shape) + np.array([west, south], float))
     width, height, thickness = _sizes(candidate.kind, candidate.shape, polygon)
     degrees = 0.0 if candidate.kind == misfit.DISC_CLASS else _rotation(candidate.kind, candidate.shape)
@@ -219,18 +169,8 @@ def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
 
 
 def outline(kind: int, shape: Floats) -> Floats:
-    """Return the corners (n, 2) x, y of a shape, in order, in squares of the image, without the first one repeated.
-
-    Origin at the lower left corner of the image's square (0, 0). A disc becomes DISC_CORNERS corners on its rim. A
-    triangle has its corners in the order of its numbers; all else is counter-clockwise. Corners need not be whole
-    numbers.
-
-    Parameters
-    ----------
-    kind : one of the classes of misfit.
-    shape : (PARAMETER_COUNT,) the numbers of the shape: angle (radians), centre x, y, width, height, thickness, stem;
-        of a triangle three corners x, y; of a disc centre x, y and radius; squares of the image.
-    """
+    """Return the corners (n, 2) x, y of a shape, in order, in squares of the image, without the first one repeated."""
+    # Corners need not be whole numbers.
     if kind == misfit.TRIANGLE_CLASS:
         return shape[:6].reshape(3, 2)
     if kind == misfit.DISC_CLASS:
@@ -247,14 +187,7 @@ def outline(kind: int, shape: Floats) -> Floats:
 
 
 def _corners(kind: int, width: float, height: float, thickness: float, stem: float) -> list[tuple[float, float]]:
-    """Return the corners (x, y) of a shape made of rectangles, not turned, lower left at the origin, counter-clockwise.
-
-    Parameters
-    ----------
-    kind : any class but TRIANGLE_CLASS and DISC_CLASS.
-    width, height, thickness : of the rectangle that holds it, and of its arms, squares.
-    stem : the width of an L's stem, squares; the other classes do not use it.
-    """
+    """Return the corners (x, y) of a shape made of rectangles, lower left at the origin, counter-clockwise."""
     if kind <= misfit.BRICK_CLASS:
         return [(0, 0), (width, 0), (width, height), (0, height)]
     if kind == misfit.ELL_CLASS:
@@ -276,16 +209,7 @@ def _corners(kind: int, width: float, height: float, thickness: float, stem: flo
 
 
 def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]:
-    """Return the width, height and thickness of a shape, in squares; thickness 0.0 without arms.
-
-    Of a disc the diameter twice, of a triangle the longest side and the height on it, else the sides of the rectangle
-    that holds the shape, in its own frame.
-
-    Parameters
-    ----------
-    kind, shape : the class, and the numbers (PARAMETER_COUNT,) of the shape in squares of the image and radians.
-    polygon : its shapely Polygon; only the area of a triangle is read.
-    """
+    """Return the width, height and thickness of a shape, in squares; thickness 0.0 without arms."""
     if kind == misfit.DISC_CLASS:
         return 2 * float(shape[2]), 2 * float(shape[2]), 0.0
     if kind == misfit.TRIANGLE_CLASS:
@@ -297,11 +221,7 @@ def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]
 
 
 def _rotation(kind: int, shape: Floats) -> float:
-    """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side.
-
-    From 0 to below 360, counter-clockwise from the east. `kind` : any class but DISC_CLASS. `shape` :
-    (PARAMETER_COUNT,) its numbers: the angle in radians first, or three corners x, y.
-    """
+    """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side."""
     if kind != misfit.TRIANGLE_CLASS:
         return math.degrees(float(shape[0])) % 360.0
     corners = shape[:6].reshape(3, 2)

@@ -28,16 +28,7 @@ MIN_BRICK_RATIO = 1.15  # length by width; convention: a brick is at least so mu
 
 @compiled
 def disagreement(kind: int, shape: Floats, image: Image) -> float:
-    """Return how far a shape would have to move for every known square to agree: the sum of all wrong gaps, in squares.
-
-    It is 0 at best. A shape that is no proper one of its class costs ten times its violation more.
-
-    Parameters
-    ----------
-    kind : one of the classes (SQUARE_CLASS ... DISC_CLASS).
-    shape : (PARAMETER_COUNT,) the numbers of the shape, as this module explains them.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    """
+    """Return how far a shape would have to move for every known square to agree: the sum of all wrong gaps."""
     loss = 10.0 * class_violation(kind, shape)
     pieces = convex_pieces(kind, shape)
     for row in range(image.shape[0]):
@@ -54,18 +45,7 @@ def disagreement(kind: int, shape: Floats, image: Image) -> float:
 
 @compiled
 def count_wrong_squares(kind: int, shape: Floats, image: Image, most: float = math.inf) -> int:
-    """Return the number of known squares that a shape gets wrong, or some number not below `most`.
-
-    Wrong is an occupied square that it does not cover, or a free one that it does. A square that the shape only touches
-    is not covered.
-
-    Parameters
-    ----------
-    kind : one of the classes (SQUARE_CLASS ... DISC_CLASS).
-    shape : (PARAMETER_COUNT,) the numbers of the shape, squares of the image and radians.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    most : counting ends after the row in which this number is reached.
-    """
+    """Return the number of known squares that a shape gets wrong, or some number not below `most`."""
     wrong: int = 0
     pieces = convex_pieces(kind, shape)
     for row in range(image.shape[0]):
@@ -80,11 +60,7 @@ def count_wrong_squares(kind: int, shape: Floats, image: Image, most: float = ma
 
 @compiled
 def class_violation(kind: int, shape: Floats) -> float:
-    """Return by how much a shape fails to be a proper one of its class, in squares; 0 for a proper shape.
-
-    `kind` : one of the classes. `shape` : (PARAMETER_COUNT,) the numbers of the shape, squares and radians. It is the
-        sum of what its sides, arms and notches are too short by, and of what a brick is too short by for its width.
-    """
+    """Return by how much a shape fails to be a proper one of its class, in squares; 0 for a proper shape."""
     if kind == DISC_CLASS:
         return float(max(0.0, MIN_FEATURE - shape[2]))
     if kind == TRIANGLE_CLASS:
@@ -109,19 +85,13 @@ def class_violation(kind: int, shape: Floats) -> float:
 
 @compiled
 def stem_of(shape: Floats) -> float:
-    """Return the thickness of a shape's stem, in squares; it differs from the other arms only in some ELLs.
-
-    `shape` : (PARAMETER_COUNT,) numbers of a shape made of rectangles.
-    """
+    """Return the thickness of a shape's stem, in squares; it differs from the other arms only in some ELLs."""
     return float(shape[6] if shape[6] != 0.0 else shape[5])
 
 
 @compiled
 def _smallest_height(shape: Floats) -> float:
-    """Return the least of a triangle's three heights, in squares.
-
-    `shape` : numbers of a triangle: three corners x, y.
-    """
+    """Return the least of a triangle's three heights, in squares."""
     area = (shape[2] - shape[0]) * (shape[5] - shape[1]) - (shape[3] - shape[1]) * (shape[4] - shape[0])
     longest = 1e-9
     for k in range(3):
@@ -132,13 +102,7 @@ def _smallest_height(shape: Floats) -> float:
 
 @compiled
 def convex_pieces(kind: int, shape: Floats) -> Floats:
-    """Return a shape's convex pieces as separating lines (n, 3): rows (normal x, y, offset), eight a piece.
-
-    A square with its centre at p is apart from a piece by at least normal . p - offset, for each of its rows; all in
-    squares of the image. For a disc the one row is (centre x, centre y, radius). One piece (8 rows) for a square, brick
-    or triangle, two for an L or T, three for a U. `kind`, `shape` : class and numbers (PARAMETER_COUNT,) of the shape,
-    squares of the image and radians.
-    """
+    """Return a shape's convex pieces as separating lines (n, 3): rows (normal x, y, offset), eight a piece."""
     if kind == DISC_CLASS:
         return shape[:3].copy().reshape(1, 3)
     if kind == TRIANGLE_CLASS:
@@ -170,14 +134,7 @@ def convex_pieces(kind: int, shape: Floats) -> Floats:
 def _rectangle_lines(
     shape: Floats, west: float, south: float, east: float, north: float, lines: Floats, first: int
 ) -> None:
-    """Write the eight lines of a rectangle given in the shape's own frame: its four sides, then its bounding box.
-
-    Parameters
-    ----------
-    shape : numbers of the shape; its angle, radians, and its centre x, y are read.
-    west, south, east, north : sides of the rectangle, squares, relative to the shape's centre, not turned.
-    lines : (n, 3) output, rows (normal x, y, offset), from row `first` on; the offset counts half a square's extent.
-    """
+    """Write the eight lines of a rectangle given in the shape's own frame: its four sides, then its bounding box."""
     c, s = math.cos(shape[0]), math.sin(shape[0])
     u, v = (west + east) / 2, (south + north) / 2
     x, y = shape[1] + c * u - s * v, shape[2] + s * u + c * v
@@ -191,10 +148,7 @@ def _rectangle_lines(
 
 @compiled
 def _two_lines(lines: Floats, row: int, nx: float, ny: float, x: float, y: float, half: float) -> None:
-    """Write the two lines across a normal at distance `half` from a centre to rows `row` and `row` + 1 of `lines`.
-
-    `nx`, `ny` : unit normal. `x`, `y` : the centre. All in squares of the image.
-    """
+    """Write the two lines across a normal at distance `half` from a centre to rows `row` and `row` + 1 of `lines`."""
     middle = nx * x + ny * y
     lines[row, 0], lines[row, 1], lines[row, 2] = nx, ny, middle + half
     lines[row + 1, 0], lines[row + 1, 1], lines[row + 1, 2] = -nx, -ny, half - middle
@@ -202,11 +156,7 @@ def _two_lines(lines: Floats, row: int, nx: float, ny: float, x: float, y: float
 
 @compiled
 def _triangle_lines(shape: Floats) -> Floats:
-    """Return the lines of a triangle: three sides, its bounding box, and one more that never separates.
-
-    (8, 3) float64 rows (normal x, y, offset) in squares of the image: a square with its centre at p is apart from the
-    triangle by at least normal . p - offset. `shape` : three corners x, y, in either sense.
-    """
+    """Return the lines of a triangle: three sides, its bounding box, and one more that never separates."""
     lines = np.zeros((8, 3))
     area = (shape[2] - shape[0]) * (shape[5] - shape[1]) - (shape[3] - shape[1]) * (shape[4] - shape[0])
     sign = 1.0 if area >= 0 else -1.0
@@ -227,11 +177,7 @@ def _triangle_lines(shape: Floats) -> Floats:
 
 @compiled
 def gap_to_square(pieces: Floats, x: float, y: float) -> float:
-    """Return the gap in squares between the square centred at (x, y) and a shape's pieces; negative if they overlap.
-
-    `pieces` : (n, 3) rows (normal x, y, offset), eight for each convex piece, from convex_pieces; for a disc one row
-        (centre x, y, radius). `x`, `y` : in squares of the image. Gaps may be less than the true distance, never more.
-    """
+    """Return the gap in squares between the square centred at (x, y) and a shape's pieces; negative if they overlap."""
     if len(pieces) == 1:  # a disc
         dx = max(abs(x - pieces[0, 0]) - 0.5, 0.0)
         dy = max(abs(y - pieces[0, 1]) - 0.5, 0.0)
@@ -249,18 +195,7 @@ def gap_to_square(pieces: Floats, x: float, y: float) -> float:
 
 @compiled
 def descend(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> float:
-    """Move a shape, in place, to the least disagreement nearby, and return its disagreement there (in squares).
-
-    The method is that of Nelder and Mead (1965).
-
-    Parameters
-    ----------
-    kind : one of the classes (SQUARE_CLASS ... DISC_CLASS).
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    shape : (PARAMETER_COUNT,) numbers of the shape; changed.
-    free : (PARAMETER_COUNT,) how far each number is moved at first, in squares or radians; 0 for numbers that stay.
-    steps : the number of steps at most.
-    """
+    """Move a shape, in place, to the least disagreement nearby, and return its disagreement there (in squares)."""
     simplex = np.empty((PARAMETER_COUNT + 1, PARAMETER_COUNT))
     losses = np.empty(PARAMETER_COUNT + 1)
     middle, trial, further = np.empty(PARAMETER_COUNT), np.empty(PARAMETER_COUNT), np.empty(PARAMETER_COUNT)
@@ -317,11 +252,7 @@ def _combine(p: float, one: Floats, q: float, other: Floats, out: Floats) -> Non
 
 @compiled
 def _extremes(losses: Floats, n: int) -> tuple[int, int, int]:
-    """Return the indices of the least, the greatest and the second greatest of the first n numbers of `losses`.
-
-    Three different indices but for n = 2, where the second greatest is the least. Of equal numbers the least is the
-    first, the greatest the last. n is at least 2.
-    """
+    """Return the indices of the least, the greatest and the second greatest of the first n numbers of `losses`."""
     low, height = 0, 0
     for k in range(1, n):
         if losses[k] < losses[low]:

@@ -38,34 +38,18 @@ CORNER_RANGE = 10.0  # squares; prior: offsets of a triangle's corners from its 
 
 
 class ParameterVolume(NamedTuple):
-    """The volume of a class's parameters that agree with an image.
+    """The volume of a class's parameters that agree with an image."""
 
-    Attributes
-    ----------
-    mean : (PARAMETER_COUNT,), the mean of the shapes that agree, numbers as in misfit; the shape asked about if the
-        mean does not agree itself.
-    log_likelihood : the natural logarithm of the likelihood of the image; higher is likelier. Only differences between
-        classes of one image mean something.
-    """
-
+    # (PARAMETER_COUNT,), the mean of the shapes that agree, numbers as in misfit; the shape asked about if the mean
+    # does not agree itself
     mean: Floats
+    # The natural logarithm of the likelihood of the image; higher is likelier. Only differences between classes of one
+    # image mean something.
     log_likelihood: float
 
 
 def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
-    """Return the volume of the parameters about a shape that gets at most so many squares of an image wrong.
-
-    The ParameterVolume holds the mean of these shapes, (PARAMETER_COUNT,) numbers in squares of the image and radians,
-    and the natural logarithm of the likelihood of the image; higher is likelier. Shapes turned by any angle are equally
-    likely, and so are lengths and diameters over SIZE_RANGE squares. The same arguments give the same answer.
-
-    Parameters
-    ----------
-    kind : one of the classes of misfit.
-    shape : (PARAMETER_COUNT,) numbers of the shape about which is looked, squares of the image and radians.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    wrong : the number of squares that the shape gets wrong.
-    """
+    """Return the volume of the parameters about a shape that gets at most so many squares of an image wrong."""
     free = initial_steps(kind)
     if kind == ELL_CLASS and shape[6] != 0.0:
         free[6] = free[5]
@@ -74,11 +58,7 @@ def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> Para
 
 
 def _log_density(kind: int, uneven: bool) -> float:
-    """Return the log density of a class in its numbers, all that stand for one shape taken together.
-
-    Higher is likelier. The natural logarithm of a density per square of length and per radian. `kind` : one of the
-    classes of misfit. `uneven` : whether the shape is an L with arms of two widths.
-    """
+    """Return the log density of a class in its numbers, all that stand for one shape taken together."""
     if kind == DISC_CLASS:
         return -math.log(SIZE_RANGE / 2)
     if kind == TRIANGLE_CLASS:
@@ -101,23 +81,7 @@ def _random_numbers() -> Floats:
 def _sample_volume(
     kind: int, shape: Floats, image: Image, wrong: int, free: Floats, random: Floats
 ) -> tuple[Floats, float]:
-    """Return the mean of the shapes about one that get no more squares wrong, and the volume that they fill.
-
-    Parameters
-    ----------
-    kind : one of the classes of misfit.
-    shape : (PARAMETER_COUNT,) numbers of the shape about which is looked, squares of the image and radians.
-    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    wrong : number of squares that may be wrong.
-    free : (PARAMETER_COUNT,) how far the walk goes in each number in one step, in squares or radians; 0 for numbers
-        that stay.
-    random : (2 n, PARAMETER_COUNT) numbers from -1 to 1: n steps of the walk, then n places in the box.
-
-    Returns
-    -------
-    (PARAMETER_COUNT,) the mean, or `shape` if the mean gets more squares wrong; and the volume, squares and radians
-    multiplied, always above 0.
-    """
+    """Return the mean of the shapes about one that get no more squares wrong, and the volume that they fill."""
     count = len(random) // 2
     at, other = shape.copy(), shape.copy()
     total, squared = np.zeros(PARAMETER_COUNT), np.zeros(PARAMETER_COUNT)
@@ -147,9 +111,5 @@ def _sample_volume(
 
 @compiled
 def _agrees(kind: int, shape: Floats, image: Image, wrong: int) -> bool:
-    """Return whether a shape is a proper one of its class and gets at most `wrong` squares wrong.
-
-    `kind` : one of the classes of misfit. `shape` : (PARAMETER_COUNT,) its numbers. `image` : (rows, columns) of
-        IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
-    """
+    """Return whether a shape is a proper one of its class and gets at most `wrong` squares wrong."""
     return class_violation(kind, shape) == 0.0 and count_wrong_squares(kind, shape, image, wrong + 1.0) <= wrong

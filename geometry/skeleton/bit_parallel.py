@@ -21,25 +21,13 @@ EVEN_BYTES, EVEN_PAIRS, LOWER_HALF = 0x00FF00FF00FF00FF, 0x0000FFFF0000FFFF, 0xF
 
 @bare
 def degrees(word: int) -> int:
-    """Return a word with the number of links (0 to 4) of each of its eight cells in the byte of the cell.
-
-    `word` : the states of eight cells, a byte each (see skeleton.py); a link is one of the four lowest bits (1 east, 2
-        north, 4 west, 8 south).
-    """
+    """Return a word with the number of links (0 to 4) of each of its eight cells in the byte of the cell."""
     return (word & LOWEST_BITS) + (word >> 1 & LOWEST_BITS) + (word >> 2 & LOWEST_BITS) + (word >> 3 & LOWEST_BITS)
 
 
 @bare
 def node_marks(word: int, degree: int) -> int:
-    """Return a word with 1 in the byte of each node, 0 elsewhere.
-
-    A node is a cell flagged by the highest bit (HALT), or one with links or flags but not two links.
-
-    Parameters
-    ----------
-    word : the states of eight cells, a byte each: bits 1 to 8 links, 16 to 64 flags, 128 HALT.
-    degree : their numbers of links, as `degrees` returns them.
-    """
+    """Return a word with 1 in the byte of each node, 0 elsewhere."""
     two = degree >> 1 & ~degree
     some = word | word >> 4
     some |= some >> 2
@@ -56,16 +44,7 @@ def sum_of_bytes(word: int) -> int:
 
 @bare
 def count_nodes(words: Eights, base: Ints, since: ByteFlags) -> tuple[int, int, int]:
-    """Return the numbers of nodes, of chain ends at nodes, and of links of the whole skeleton.
-
-    A chain has two ends; a link between two neighbouring cells counts once.
-
-    Parameters
-    ----------
-    words : (words,) int64, states of eight cells each, of the whole padded screen.
-    base : (words / 16, rounded up) int32, filled with the number of nodes before each group of sixteen words.
-    since : (words,) uint8, filled with the number of nodes from the start of its group up to each word.
-    """
+    """Return the numbers of nodes, of chain ends at nodes, and of links of the whole skeleton."""
     nodes, ends, links, start, lots = 0, 0, 0, 0, 0
     for k in range(words.shape[0]):
         if k & 15 == 0:
@@ -84,17 +63,7 @@ def count_nodes(words: Eights, base: Ints, since: ByteFlags) -> tuple[int, int, 
 
 @bare
 def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> int:
-    """Append the cells of the nodes in the words ``first <= k < last`` to ``node``, and return their number so far.
-
-    That is `found` plus the number of those appended.
-
-    Parameters
-    ----------
-    words : (words,) int64, states of eight cells each, of the whole padded screen; `last` may lie beyond.
-    node : (nodes + 1 or more,) int32, filled from ``found`` on with flat indices (row * width + column, padded),
-        ascending. One element behind the last node is overwritten.
-    found : so many nodes are listed already.
-    """
+    """Append the cells of the nodes in the words ``first <= k < last`` to ``node``, and return their number so far."""
     for k in range(first, last if last < words.shape[0] else words.shape[0]):
         mark = node_marks(words[k], degrees(words[k]))
         if mark != 0:
@@ -107,17 +76,7 @@ def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> 
 
 @bare
 def node_number(cell: int, words: Eights, base: Ints, since: ByteFlags) -> int:
-    """Return the number of nodes before a cell; when the cell is a node itself, that is its own number.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    cell : flat index into the padded screen.
-    words : (words,) int64, states of eight cells each, unchanged since `count_nodes`.
-    base, since : as ``count_nodes`` filled them: nodes before each group of sixteen words, and from there up to each
-        word.
-    """
+    """Return the number of nodes before a cell; when the cell is a node itself, that is its own number."""
     k = cell >> 3
     before = node_marks(words[k], degrees(words[k])) & (1 << 8 * (cell & 7)) - 1
     return int(base[k >> 4] + since[k] + sum_of_bytes(before))

@@ -26,18 +26,10 @@ MADV_POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
 class Buffers(NamedTuple):
-    """The arrays of a screen, which has a padded shape of (rows + 2, columns + 2): one blocked cell on each side.
+    """The arrays of a screen, which has a padded shape of (rows + 2, columns + 2): one blocked cell on each side."""
 
-    Attributes
-    ----------
-    square : (rows + 2, columns + 2) int16 or int32
-        Room for squared clearances in squared half squares.
-    words : (cells / 8, rounded up) uint64
-        Room for the states of the skeleton, eight cells a word, a byte each.
-    """
-
-    square: SquaredDistances
-    words: Words
+    square: SquaredDistances  # Room for squared clearances in squared half squares
+    words: Words  # Room for the states of the skeleton, eight cells a word, a byte each
 
 
 class Tenant:
@@ -49,24 +41,7 @@ SPARE_BUFFERS: dict[tuple[int, int], Buffers] = {}
 
 
 def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | type[np.int32]) -> Buffers:
-    """Return a set of arrays for a tenant, which is spare again when the tenant dies.
-
-    Parameters
-    ----------
-    tenant : Tenant
-        Its life is the time for which the set is in use.
-    shape : (int, int)
-        Padded shape: (rows + 2, columns + 2).
-    kind : type
-        Least type of ``square``, np.int16 or np.int32; a spare set of the larger type serves as well.
-
-    Returns
-    -------
-    Buffers
-        ``square``, room for squared clearances, of the padded shape, and ``words``, room for the states of the
-        skeleton, eight cells a word. With arbitrary values, but for the bytes of ``words`` beyond the last cell, which
-        are 0.
-    """
+    """Return a set of arrays for a tenant, which is spare again when the tenant dies."""
     buffers = SPARE_BUFFERS.pop(shape, None)
     if buffers is None or buffers.square.dtype < kind:
         cells = shape[0] * shape[1]
@@ -88,13 +63,8 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
 
 
 def populate(array: NDArray[Any], advise: Adviser | None) -> None:
-    """Ask the system to provide the memory of an array at once, which is faster than page by page as it is written.
-
-    Only advice, nothing is written: nothing happens where the system does not know it, or for arrays of less than 64
-    KiB or of 4 MiB and more.
-
-    advise : the system's madvise; None where there is none.
-    """
+    """Ask the system to provide the memory of an array at once, which is faster than page by page as it is written."""
+    # None where there is none.
     if advise is not None and MIN_POPULATED_BYTES <= array.nbytes < MAX_POPULATED_BYTES:
         begin = array.ctypes.data
         first = begin - begin % PAGE_BYTES
@@ -103,12 +73,8 @@ def populate(array: NDArray[Any], advise: Adviser | None) -> None:
 
 @cache
 def adviser(platform: str = sys.platform) -> Adviser | None:
-    """Return Linux's madvise, or None on other systems and where it is not found.
-
-    It takes an address, a number of bytes and the number of an advice, and returns 0 or, for an error, -1.
-
-    platform : the name of the system, as in sys.platform.
-    """
+    """Return Linux's madvise, or None on other systems and where it is not found."""
+    # It takes an address, a number of bytes and the number of an advice, and returns 0 or, for an error, -1.
     if not platform.startswith("linux"):
         return None
     import ctypes

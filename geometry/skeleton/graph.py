@@ -23,55 +23,18 @@ WORDS_AHEAD = 1 << 14  # words of states listed ahead of the walk: twice as many
 
 
 class SkeletonGraph(NamedTuple):
-    """The pathgraph of n nodes and m chains, by cells of the padded screen.
+    """The pathgraph of n nodes and m chains, by cells of the padded screen."""
 
-    A cell is the flat index row * (columns + 2) + column, both counted with the blocked frame of one cell, from the
-    south-west. Nodes are junctions and ends of the skeleton, chains the lines of cells between them.
-
-    Attributes
-    ----------
-    node : (n,) int32
-        Cell of each node, ascending.
-    port : (m, 2) int32
-        First and last end of each chain, as 4 times the number of the node plus the direction in which the chain leaves
-        it (0 east, 1 north, 2 west, 3 south). The first ends ascend, and each is less than its last end.
-    neck : (m,) int32
-        Lowest cell of each chain (least clearance, then least index): its narrowest place.
-    steps : (m,) int32
-        Number of steps from square to square from end to end of each chain.
-    """
-
-    node: Ints
+    node: Ints  # Cell of each node, ascending
+    # First and last end of each chain, as 4 times the number of the node plus the direction in which the chain leaves
+    # it (0 east, 1 north, 2 west, 3 south). The first ends ascend, and each is less than its last end.
     port: Ints
-    neck: Ints
-    steps: Ints
+    neck: Ints  # Lowest cell of each chain (least clearance, then least index): its narrowest place
+    steps: Ints  # Number of steps from square to square from end to end of each chain
 
 
 def contract(square: SquaredDistances, state: States, words: Words, min_notes: int = MIN_NOTES) -> SkeletonGraph:
-    """Return the graph of a skeleton, and flag the first cells of rings without a junction as nodes in ``state``.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in squared half squares, (2 * clearance in squares)^2.
-    state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
-        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. That bit, HALT, of
-        the first cell (least index) of a ring without a junction is set.
-    words : (n,) uint64
-        The memory of ``state`` by eights.
-    min_notes : int
-        The least room for notes, which are the cells that may be the lowest of their chain; it changes no result.
-
-    Returns
-    -------
-    SkeletonGraph
-        The cells of the nodes, ascending (flat padded indices), and of each chain its two ends (4 times the node plus
-        the direction in which it leaves), its lowest cell and its number of steps. With no node when the skeleton is
-        empty. A summit without links is a node without chains.
-    """
+    """Return the graph of a skeleton, and flag the first cells of rings without a junction as nodes in ``state``."""
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states), min_notes)
     base, since = np.empty((size + 15) // 16, np.int32), np.empty(size, np.uint8)
@@ -88,26 +51,8 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
 
 
 def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGraph, notes: Ints) -> SkeletonGraph:
-    """Return ``bones`` with the rings added whose first cells are flagged in ``states``, in the order of cells.
-
-    A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends. New nodes
-    and chains are inserted where the order of cells puts them, so the numbers of old ones behind them grow. The graph
-    holds the cells of nodes, and of each chain its two ends, its lowest cell and its number of steps. Flat indices are
-    row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares, flat.
-    states : (cells,) uint8
-        States of the skeleton, flat; cells with HALT are the first cells of rings.
-    width : int
-        Width of the padded screen.
-    bones : SkeletonGraph
-        The graph without the rings; it is not changed.
-    notes : (size,) int32
-        Scratch for cells that may be the lowest of their ring.
-    """
+    """Return ``bones`` with the rings added whose first cells are flagged in ``states``, in the order of cells."""
+    # New nodes and chains are inserted where the order of cells puts them, so the numbers of old ones behind them grow.
     cells = np.flatnonzero(states >= HALT).astype(np.int32)
     place = bones.node.searchsorted(cells)
     node, ring = np.insert(bones.node, place, cells), (place + np.arange(len(cells))).astype(np.int32)
@@ -136,30 +81,7 @@ def walk_rings(
     steps: Ints,
     notes: Ints,
 ) -> None:
-    """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares, flat.
-    states : (cells,) uint8
-        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
-    width : int
-        Width of the padded screen.
-    node : (n,) int32
-        Cell of each node, those of the rings included.
-    ring : (r,) int32
-        Numbers of the nodes of rings, ascending.
-    port : (r, 2) int32
-        Filled with the two ends of each ring: 4 times the number of its node plus the direction in which it leaves
-        there.
-    neck, steps : (r,) int32
-        Filled with the lowest cell (flat index) of each ring and its number of steps from square to square.
-    notes : (size,) int32
-        Scratch for cells that may be the lowest of their ring.
-    """
+    """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps."""
     for k in range(ring.shape[0]):
         cell = int(node[ring[k]])
         direction = first_direction(int(states[cell] & LINKS))
@@ -170,22 +92,7 @@ def walk_rings(
 
 @bare
 def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
-    """Set HALT in the state of the first cell of every ring that has no junction.
-
-    A ring is found from the saddle that is its lowest cell. Its first cell is that of the least index. Flat indices are
-    row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares, flat.
-    states : (cells,) uint8
-        States of the skeleton, flat; changed.
-    width : int
-        Width of the padded screen.
-    words : (cells / 8, rounded up) uint64
-        The memory of ``states`` by eights.
-    """
+    """Set HALT in the state of the first cell of every ring that has no junction."""
     for word in range(words.shape[0]):
         if words[word] == 0:
             continue
@@ -198,20 +105,7 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
 
 @bare
 def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
-    """Return the first cell (least flat index) of the ring on which a saddle lies and is the lowest cell.
-
-    -1 when the ring has a node or a lower saddle. Flat indices are row * width + column in the screen padded by one
-    blocked cell on each side.
-
-    Parameters
-    ----------
-    saddle : int
-        Flat index of a saddle that is no node.
-    heights, states : (cells,)
-        Squared clearances in squared half squares, and states of the skeleton, flat.
-    width : int
-        Width of the padded screen.
-    """
+    """Return the first cell (least flat index) of the ring on which a saddle lies and is the lowest cell."""
     cell, direction, first = saddle, first_direction(int(states[saddle])), saddle
     while True:
         cell += stride(direction, width)
@@ -226,10 +120,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
 @bare
 def is_node(here: int) -> bool:
-    """Return whether a cell of the state `here` (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
-
-    It is when flagged HALT, or with links or flags but not two links. State 0, off the skeleton, is none.
-    """
+    """Return whether a cell of the state `here` (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node."""
     links = (here & 5) + (here >> 1 & 5)
     return bool((here != 0) & ((here & HALT != 0) | ((links & 3) + (links >> 2) != 2)))
 
@@ -249,36 +140,7 @@ def walk_chains(
     seen: States,
     notes: Notes,
 ) -> int:
-    """List the nodes, walk every chain once from its first end, and return the number of links (steps) walked.
-
-    Nodes are listed some way ahead of the walk, which then finds the states there in the processor's cache. Rings
-    without a node are not walked. Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares, flat.
-    states : (cells,) uint8
-        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
-    words : (cells / 8, rounded up) int64
-        The memory of ``states`` by eights.
-    width : int
-        Width of the padded screen.
-    base, since : int32 and uint8
-        Nodes before each group of sixteen words, and from there up to each word.
-    node : (n + 1,) int32
-        Filled with the cells of the nodes, ascending.
-    port : (m, 2) int32
-        Filled with the first and the last end of each chain: 4 times the number of the node plus the direction (0 east,
-        1 north, 2 west, 3 south) in which the chain leaves it.
-    neck, steps : (m,) int32
-        Filled with the lowest cell of each chain and its number of steps from square to square.
-    seen : (n,) uint8
-        0 at first; notes the ends met at each node, as bits by direction.
-    notes : (2, size) int32
-        Scratch for cells that may be the lowest of their chain, and their squared clearances.
-    """
+    """List the nodes, walk every chain once from its first end, and return the number of links (steps) walked."""
     chain, settled, noted, walked, n, found = 0, 0, 0, 0, 0, 0
     for first in range(-WORDS_AHEAD, words.shape[0], WORDS_AHEAD):
         listed, found = found, list_nodes(words, first + WORDS_AHEAD, first + 2 * WORDS_AHEAD, node, found)
@@ -306,27 +168,8 @@ def walk_chains(
 def walk_chain(
     cell: int, direction: int, heights: Heights, states: Flags, width: int, notes: Ints, noted: int
 ) -> tuple[int, int, int, int]:
-    """Walk one chain from a node; return its last cell, the direction back from there, its steps, and the notes so far.
-
-    That is: the flat index of the node at its other end, the direction (0 to 3) in which the chain leaves that node,
-    the number of steps from square to square, and how many of ``notes`` are in use now. Flat indices are row * width +
-    column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    cell, direction : int
-        Flat index of the first node, and the direction (0 east, 1 north, 2 west, 3 south) of the link by which the
-        chain leaves it.
-    heights, states : (cells,)
-        Squared clearances in squared half squares, and states of the skeleton, flat.
-    width : int
-        Width of the padded screen.
-    notes : (size,) int32
-        Cells that may be the lowest of their chain: the two ends and the saddles of this one are added, the first as
-        ~cell (see lowest_cells.py). When room runs out, those of this chain are replaced by the lowest so far.
-    noted : int
-        How many of ``notes`` are in use already.
-    """
+    """Walk one chain from a node."""
+    # Return its last cell, the direction back from there, its steps, and the notes so far.
     steps, first = 0, noted
     notes[noted] = ~cell
     noted += 1
@@ -350,36 +193,21 @@ def walk_chain(
 
 @bare
 def other_direction(here: int, back: int) -> int:
-    """Return the direction (0 east, 1 north, 2 west, 3 south) of the other link of a cell that has two links.
-
-    Parameters
-    ----------
-    here : the state of the cell; its four lowest bits are the links. With other than two links the answer means
-        nothing.
-    back : the direction of the one link, 0 to 3, as seen from the cell.
-    """
+    """Return the direction (0 east, 1 north, 2 west, 3 south) of the other link of a cell that has two links."""
     rest = int(here & LINKS) ^ (1 << back)
     return (rest >> 1) - (rest >> 3)
 
 
 @bare
 def first_direction(here: int) -> int:
-    """Return the first direction (0 east, 1 north, 2 west, 3 south) in which a cell has a link.
-
-    `here` : its state, with a link at least; the flags in its higher bits do not count (see skeleton.py).
-    """
+    """Return the first direction (0 east, 1 north, 2 west, 3 south) in which a cell has a link."""
     first = here & -here
     return (first >> 1) - (first >> 3)
 
 
 @bare
 def find(node: Ints, cell: int) -> int:
-    """Return the number of the first node at or after a cell, by bisection; the number of nodes when there is none.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    `node` : (n,) cells of nodes (flat indices), ascending. `cell` : a flat index.
-    """
+    """Return the number of the first node at or after a cell, by bisection; the number of nodes when there is none."""
     low, high = 0, node.shape[0]
     while low < high:
         middle = (low + high) >> 1

@@ -18,27 +18,13 @@ MIN_NOTES, MAX_NOTES = 32, 1024  # room on the smallest and the largest screens 
 
 
 def new_notes(cells: int, min_notes: int = MIN_NOTES) -> Notes:
-    """Return scratch (2, size) int32, uninitialised: row 0 for notes, row 1 for their squared clearances.
-
-    Notes are the cells that may be the lowest of their chain. The size is a 64th of `cells`, the number of cells of the
-    padded screen, but at least `min_notes` and at most 1024.
-    """
+    """Return scratch (2, size) int32, uninitialised: row 0 for notes, row 1 for their squared clearances."""
     return np.empty((2, min(max(min_notes, cells >> 6), MAX_NOTES)), np.int32)
 
 
 @bare
 def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> int:
-    """Return the lowest cell (flat index) of one chain, by its notes ``first <= k < last``.
-
-    Lower is the cell of less clearance and, of two with the same, that of the lower index. Flat indices are row * width
-    + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    notes : (size,) int32, the cells of the chain that may be its lowest, its ends and saddles; the first one as ~cell.
-    first, last : where the notes of this chain begin, and the index behind its last; at least one.
-    heights : (cells,) squared clearances in squared half squares, flat.
-    """
+    """Return the lowest cell (flat index) of one chain, by its notes ``first <= k < last``."""
     lowest = int(~notes[first])
     low = heights[lowest]
     for k in range(first + 1, last):
@@ -51,22 +37,8 @@ def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> 
 
 @bare
 def find_lowest(notes: Ints, values: Ints, noted: int, heights: SquaredDistances, chain: int, neck: Ints) -> None:
-    """Fill ``neck`` with the lowest cells of successive chains, from number ``chain`` on, by their notes.
-
-    Lower is the cell of less clearance and, of two with the same, that of the lower index. The loop has no branches,
-    because none could be predicted. Flat indices are row * width + column in the screen padded by one blocked cell on
-    each side.
-
-    Parameters
-    ----------
-    notes : (size,) int32, the cells (flat indices) that may be the lowest of their chain, its ends and saddles, chain
-        by chain; the first one of each chain as ~cell, which is negative.
-    values : (size,) int32, scratch: their squared clearances.
-    noted : how many of ``notes`` are in use; 0 fills nothing.
-    heights : (cells,) squared clearances in squared half squares, flat.
-    chain : the number of the first of these chains.
-    neck : (m,) int32, output at the numbers of these chains; all else is left alone.
-    """
+    """Fill ``neck`` with the lowest cells of successive chains, from number ``chain`` on, by their notes."""
+    # The loop has no branches, because none could be predicted.
     for k in range(noted):
         cell = int(notes[k])
         values[k] = heights[cell if cell >= 0 else ~cell]

@@ -17,21 +17,7 @@ if TYPE_CHECKING:
 
 
 def networkx_graph(arrays: PathgraphArrays) -> "networkx.MultiGraph[int]":
-    """Return a pathgraph as a networkx graph.
-
-    Parameters
-    ----------
-    arrays : PathgraphArrays
-        The pathgraph: places and clearances of nodes, ends, lengths and points of edges. The points of edges become
-        views of its block of points.
-
-    Returns
-    -------
-    networkx.MultiGraph
-        An ordinary graph that may be changed, copied and pickled. Nodes are numbered as in ``arrays`` and carry ``x``,
-        ``y`` and ``clearance``. The key of an edge is its number in ``arrays``; edges carry ``length``, ``clearance``
-        and ``points``, a (k, 2) array of float64. All in squares, in the frame of the screen.
-    """
+    """Return a pathgraph as a networkx graph."""
     import networkx
 
     graph: networkx.MultiGraph[Any] = networkx.MultiGraph()
@@ -42,23 +28,14 @@ def networkx_graph(arrays: PathgraphArrays) -> "networkx.MultiGraph[int]":
 
 
 def node_attributes(arrays: PathgraphArrays) -> list[dict[str, float]]:
-    """Return for each node of ``arrays``, by number, a dictionary of ``x``, ``y`` and ``clearance``, all in squares.
-
-    The frame is that of the screen: x to the east, y to the north, (0, 0) at the south-west corner.
-    """
+    """Return for each node of ``arrays``, by number, a dictionary of ``x``, ``y`` and ``clearance``, all in squares."""
     x, y = arrays.nodes.T.tolist()
     places = zip(x, y, arrays.node_clearances.tolist(), strict=True)
     return [{"x": east, "y": north, "clearance": clearance} for east, north, clearance in places]
 
 
 def adjacency(arrays: PathgraphArrays) -> list[dict[int, dict[int, dict[str, Any]]]]:
-    """Return for each node its neighbours, for each of these the edges between by number, for each its attributes.
-
-    The list has a dictionary for each node of ``arrays``, by number: neighbour to (number of the edge to attributes).
-    Attributes are ``length`` and ``clearance`` in squares and ``points``, (k, 2) float64, x and y in squares, in the
-    frame of the screen. A node without edges has an empty one. Both ends of an edge share the dictionaries of the edge,
-    as networkx has it.
-    """
+    """Return for each node its neighbours, for each of these the edges between by number, for each its attributes."""
     rows: list[dict[int, dict[int, dict[str, Any]]]] = [{} for _ in range(len(arrays.nodes))]
     points, offsets = arrays.points, arrays.offsets.tolist()
     first, last = arrays.edges.T.tolist()
@@ -75,10 +52,7 @@ def adjacency(arrays: PathgraphArrays) -> list[dict[int, dict[int, dict[str, Any
 
 @contextmanager
 def paused_collection() -> Iterator[None]:
-    """Keep the garbage collector from running inside a ``with`` while many objects are made, none of which is garbage.
-
-    At the end it runs again, if it did before.
-    """
+    """Keep the garbage collector from running inside a ``with`` while many objects are made, none of it garbage."""
     enabled = gc.isenabled()
     gc.disable()
     try:

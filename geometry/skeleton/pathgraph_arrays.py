@@ -103,25 +103,7 @@ class PathgraphArrays(NamedTuple):
 
 
 def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: SkeletonGraph) -> PathgraphArrays:
-    """Return the pathgraph of a skeleton as new arrays, which share no memory with the arguments.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in squared half squares, (2 * clearance in squares)^2, with a blocked frame.
-    state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
-        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
-    bones : SkeletonGraph
-        The nodes and chains of ``state``.
-
-    Returns
-    -------
-    PathgraphArrays
-        Of the nodes their places and clearances, of the edges their end nodes, lengths, least clearances and points,
-        and lists of the edges at each node. Writable arrays, in squares, in the frame of the screen without its
-        padding; of no rows when the skeleton is empty.
-    """
+    """Return the pathgraph of a skeleton as new arrays, which share no memory with the arguments."""
     n, m = len(bones.node), len(bones.steps)
     offsets = np.zeros(m + 1, np.int32)
     np.cumsum(bones.steps + 1, out=offsets[1:])
@@ -164,31 +146,7 @@ def fill_arrays(
     incident_edges: Ints,
     neighbours: Ints,
 ) -> None:
-    """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``.
-
-    n is the number of nodes, m of edges, which are the chains. Flat indices are row * width + column in the screen
-    padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares of the padded screen, flat.
-    states : (cells,) uint8
-        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
-    width : int
-        Width of the padded screen.
-    node, port, lowest, steps : int32
-        The graph: cell of each node, both ends of each chain (4 times the node plus the direction in which it leaves),
-        lowest cell and number of steps of each chain; cells are flat indices.
-    nodes, node_clearances, edges, lengths, edge_clearances, points, narrowest, incident_edges, neighbours
-        Filled: (n, 2) places and (n,) clearances of nodes; (m, 2) end nodes, (m,) lengths and (m,) least clearances of
-        edges; (p, 2) points of all edges; (m,) row of ``points`` where each is narrowest; (2 m,) edges at each node and
-        nodes at their other ends. Lengths and places in squares.
-    offsets : (m + 1,) int32
-        Given: rows of ``points`` at which those of each edge start.
-    adjacency_offsets : (n + 2,) int32
-        0 at first; filled but for the last element, which has no meaning.
-    """
+    """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``."""
     fill_nodes(heights, width, node, nodes, node_clearances)
     for edge in range(port.shape[0]):
         edges[edge, 0], edges[edge, 1], lengths[edge] = port[edge, 0] >> 2, port[edge, 1] >> 2, steps[edge]
@@ -199,23 +157,7 @@ def fill_arrays(
 
 @bare
 def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearances: Floats) -> None:
-    """Fill places and clearances of nodes.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares of the padded screen, flat.
-    width : int
-        Width of the padded screen.
-    node : (n,) int32
-        Cells of the nodes, flat indices into the padded screen, ascending.
-    nodes : (n, 2) float64
-        Filled with their centres (x, y) in squares, in the frame of the screen without its padding.
-    clearances : (n,) float64
-        Filled with their clearances in squares.
-    """
+    """Fill places and clearances of nodes."""
     row, first = 0, 0
     for k in range(node.shape[0]):
         cell = int(node[k])
@@ -238,28 +180,7 @@ def fill_points(
     points: Floats,
     narrowest: Ints,
 ) -> None:
-    """Walk every chain from its first end and fill ``points`` and ``narrowest``.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    states : (cells,) uint8
-        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
-    width : int
-        Width of the padded screen.
-    node, port, lowest : int32
-        Cell of each node; both ends of each chain (4 times the node plus the direction in which it leaves); lowest cell
-        of each chain. Cells are flat indices into the padded screen.
-    nodes : (n, 2) float64
-        Places (x, y) of the nodes in squares.
-    offsets : (m + 1,) int32
-        Rows of ``points`` at which those of each chain start.
-    points : (p, 2) float64
-        Filled with the centres (x, y) of the squares of all chains, in squares, both end nodes included.
-    narrowest : (m,) int32
-        Filled with the row of ``points`` of each chain's lowest cell, the first one when a loop has it twice.
-    """
+    """Walk every chain from its first end and fill ``points`` and ``narrowest``."""
     for edge in range(port.shape[0]):
         first, low = port[edge, 0] >> 2, int(lowest[edge])
         cell, way, x, y = int(node[first]), 1 << (port[edge, 0] & 3), nodes[first, 0], nodes[first, 1]
@@ -279,18 +200,7 @@ def fill_points(
 
 @bare
 def fill_adjacency(edges: Ints, offsets: Ints, incident: Ints, neighbours: Ints) -> None:
-    """Sort the ends of edges by node, and fill ``offsets``, ``incident`` and ``neighbours``.
-
-    Parameters
-    ----------
-    edges : (m, 2) int32
-        Numbers of the first and the last node of each edge.
-    offsets : (n + 2,) int32
-        0 at first; filled so that what belongs to node v stands at ``offsets[v]`` to ``offsets[v + 1]`` (exclusive).
-        Its last element has no meaning.
-    incident, neighbours : (2 m,) int32
-        Filled with the numbers of the edges at each node, ascending, and with the nodes at their other ends.
-    """
+    """Sort the ends of edges by node, and fill ``offsets``, ``incident`` and ``neighbours``."""
     for edge in range(edges.shape[0]):
         for side in range(2):
             offsets[edges[edge, side] + 2] += 1

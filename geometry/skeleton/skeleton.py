@@ -39,23 +39,15 @@ CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # bits of a state; HALT: the no
 
 @bare
 def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
-    """Return SADDLE (32), SUMMIT (64) or 0 for a cell, given which of its eight neighbours are higher.
-
-    `e` east, `ne` north-east, and so on counter-clockwise. A group is a stretch of higher neighbours along that ring.
-    A group ends behind each edge neighbour that the corner neighbour between does not join to the next edge neighbour.
-    Where two groups end the cell is a saddle. It is a summit when none of the four edge neighbours is higher.
-    """
+    """Return SADDLE (32), SUMMIT (64) or 0 for a cell, given which of its eight neighbours are higher."""
     a, b, c, d = e & ~(ne & n), n & ~(nw & w), w & ~(sw & s), s & ~(se & e)
     several = (a | b) & (c | d) | a & b | c & d
     return np.uint8(np.uint8(several) << np.uint8(5) | np.uint8(~(e | n | w | s)) << np.uint8(6))
 
 
 def kinds() -> States:
-    """Return the flag (SADDLE, SUMMIT, 0) by the set of higher neighbours: (256,) uint8.
-
-    The index has bit k for the k-th of the eight neighbours, from the east counter-clockwise. Set 255 does not occur,
-    because clearance has no interior minimum; 0 stands there.
-    """
+    """Return the flag (SADDLE, SUMMIT, 0) by the set of higher neighbours: (256,) uint8."""
+    # Set 255 does not occur, because clearance has no interior minimum; 0 stands there.
     sets = [[np.bool_(higher >> k & 1) for k in range(8)] for higher in range(255)]
     return np.array([flag.function(*ring) for ring in sets] + [0], np.uint8)
 
@@ -64,13 +56,7 @@ KINDS = kinds()
 
 
 def edge_groups() -> NDArray[np.uint16]:
-    """Return the groups by the set of higher neighbours, (256,) uint16: four bits a group, from the lowest on.
-
-    The index has bit k for the k-th of the eight neighbours, from the east counter-clockwise. A group is a stretch of
-    that ring of which all are higher. The bits of a group are the edges by which it touches the cell, as the links of
-    ``state``: 1 east, 2 north, 4 west, 8 south. Groups that touch it at a corner only are left out; set 255 does not
-    occur.
-    """
+    """Return the groups by the set of higher neighbours, (256,) uint16: four bits a group, from the lowest on."""
     table = np.zeros(256, dtype=np.uint16)
     for higher in range(255):
         ring = [bool(higher >> k & 1) for k in range(8)]
@@ -100,34 +86,7 @@ def grow(
     waiting: Waiting,
     waits: int,
 ) -> int:
-    """Classify rows from ``north`` down to ``south``, link the ascents from their saddles, and return how many wait.
-
-    An ascent goes from each cell to its highest edge neighbour. It waits when it leads on to a row south of ``south``.
-    The rows further north are done already, and in the next row further south clearances are known. Cells are flat
-    indices (row * width + column) of the padded screen.
-
-    Parameters
-    ----------
-    heights : (cells,) int16 or int32
-        Squared clearances in squared half squares.
-    states : (cells,) uint8
-        Filled in these rows with links and flags; links are also set in rows further north.
-    words : (cells / 8, rounded up) uint64
-        The memory of ``states`` by eights.
-    width : int
-        Width of the padded screen.
-    level : int
-        Only cells whose squared clearance (half squares) is at least so much count.
-    south, north : int
-        First and last row, padded, from 1 on.
-    flags : (width,) uint8
-        Scratch.
-    waiting : (width,) int32
-        The cells whose ascent leads out of the rows done so far: on entry ``waits`` of row ``north + 1``, on return
-        those of row ``south``.
-    waits : int
-        How many of ``waiting`` wait on entry; 0 at the northernmost rows.
-    """
+    """Classify rows from ``north`` down to ``south``, link the ascents from their saddles, and return how many wait."""
     for row in range(south, north + 1):
         classify(heights, states, width, level, row, flags)
     first, last, left = south * width, (north + 1) * width, 0
@@ -151,20 +110,7 @@ def grow(
 
 @bare
 def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
-    """Clear the states of a row and set SADDLE or SUMMIT in those of its saddles and summits.
-
-    A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more. Flat indices
-    are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    heights, states : (cells,) squared clearances in squared half squares, and states, of which the row is overwritten;
-        both flat.
-    width : width of the padded screen.
-    level : cells of less squared clearance (half squares) get 0.
-    row : padded row, neither the first nor the last.
-    flags : (width,) uint8, scratch.
-    """
+    """Clear the states of a row and set SADDLE or SUMMIT in those of its saddles and summits."""
     first = row * width
     out = states[first : first + width]
     find_flags(heights, width, first + 1, level, flags[: width - 2])
@@ -176,20 +122,7 @@ def classify(heights: Heights, states: Flags, width: int, level: int, row: int, 
 
 @bare
 def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flags) -> None:
-    """Fill ``flags`` for as many cells of a row from ``first`` on: SADDLE, SUMMIT or 0.
-
-    A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more.
-    Cells lower than ``level`` get 0. Flat indices are row * width + column in the screen padded by one blocked cell on
-    each side.
-
-    Parameters
-    ----------
-    heights : (cells,) squared clearances in squared half squares, flat.
-    width : width of the padded screen.
-    first : flat index of the first cell, not on the frame of the screen.
-    level : a squared clearance, in half squares.
-    flags : (n,) uint8, output; none of the n cells lies on the frame.
-    """
+    """Fill ``flags`` for as many cells of a row from ``first`` on: SADDLE, SUMMIT or 0."""
     size, least = flags.shape[0] + 2, heights.dtype.type(level)
     below, here = heights[first - width - 1 : first - width - 1 + size], heights[first - 1 : first - 1 + size]
     above = heights[first + width - 1 : first + width - 1 + size]
@@ -202,12 +135,8 @@ def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flag
 
 @bare
 def higher_about(cell: int, heights: Heights, width: int) -> int:
-    """Return the set of a cell's higher neighbours: bit k for the k-th of the eight, from the east counter-clockwise.
-
-    Higher is the cell of greater clearance and, of two with the same, that of the greater flat index. The cell, a flat
-    index, does not lie on the frame of the padded screen; `heights` are squared clearances, flat, `width` is that of
-    the screen. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-    """
+    """Return the set of a cell's higher neighbours."""
+    # Bit k for the k-th of the eight, from the east counter-clockwise.
     own = heights[cell]
     higher = int(heights[cell + 1] >= own) | int(heights[cell + width + 1] >= own) << 1
     higher |= int(heights[cell + width] >= own) << 2 | int(heights[cell + width - 1] >= own) << 3
@@ -217,19 +146,8 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 
 @bare
 def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
-    """Return the direction (0 east, 1 north, 2 west, 3 south) of the highest among some edge neighbours of a cell.
-
-    Without branches, because at saddles none could be predicted. Flat indices are row * width + column in the screen
-    padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    cell : a flat index, not on the frame of the padded screen.
-    edges : which neighbours are asked about, as bits like links: 1 east, 2 north, 4 west, 8 south; not 0.
-    heights : (cells,) squared clearances in squared half squares, flat; of equal ones the greater index counts as
-        higher.
-    width : width of the padded screen.
-    """
+    """Return the direction (0 east, 1 north, 2 west, 3 south) of the highest among some edge neighbours of a cell."""
+    # Without branches, because at saddles none could be predicted.
     south = np.int64(heights[cell - width]) << 2
     west = np.int64(heights[cell - 1]) << 2 | 1
     east = np.int64(heights[cell + 1]) << 2 | 2
@@ -243,12 +161,7 @@ def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
 
 @bare
 def highest(cell: int, heights: Heights, width: int) -> int:
-    """Return the direction (0 east, 1 north, 2 west, 3 south) of the highest of the four edge neighbours of a cell.
-
-    With branches, which along a chain are predictable. Of equal neighbours that of the greater flat index counts as
-    higher. `cell` is a flat index, not on the frame; `heights` are squared clearances, flat; `width` is that of the
-    padded screen. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-    """
+    """Return the direction (0 east, 1 north, 2 west, 3 south) of the highest of the four edge neighbours of a cell."""
     east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
     if (north if north >= east else east) >= (west if west >= south else south):
         return 1 if north >= east else 0
@@ -257,20 +170,7 @@ def highest(cell: int, heights: Heights, width: int) -> int:
 
 @bare
 def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
-    """Link a cell to a higher neighbour and ascend from there until a saddle, a summit or an earlier ascent.
-
-    An ascent goes from each cell to its highest edge neighbour; CLIMBED marks the cells that one has passed.
-    Returns -1 when the ascent has ended, or the cell (flat index) from which it leads on to a cell before ``first``,
-    where it has to wait. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    cell, direction : flat index of the cell, and the direction (0 east, 1 north, 2 west, 3 south) of the neighbour.
-    heights : (cells,) squared clearances in squared half squares, flat.
-    states : (cells,) states of the skeleton, flat; links and CLIMBED are set on the way.
-    width : width of the padded screen.
-    first : flat index of the first cell of the rows done so far; cells before it are not entered.
-    """
+    """Link a cell to a higher neighbour and ascend from there until a saddle, a summit or an earlier ascent."""
     while True:
         other = cell + stride(direction, width)
         if other < first:
@@ -285,53 +185,32 @@ def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int
 
 @bare
 def link(cell: int, other: int, direction: int, states: Flags) -> None:
-    """Set the two link bits between edge neighbours in ``states``.
-
-    ``direction`` (0 east, 1 north, 2 west, 3 south) leads from ``cell`` to ``other``, both flat indices. Flat indices
-    are row * width + column in the screen padded by one blocked cell on each side.
-    """
+    """Set the two link bits between edge neighbours in ``states``."""
     states[cell] |= 1 << direction
     states[other] |= 1 << (direction ^ 2)
 
 
 @bare
 def steepest(cell: int, heights: Heights, width: int) -> int:
-    """Return the highest edge neighbour (flat index) of a cell that is no summit; of equal ones the greater index.
-
-    `heights` : (cells,) squared clearances in squared half squares, flat. `width` : that of the padded screen. For a
-    summit, which has no higher neighbour, the highest of the lower ones is returned. Flat indices are row * width +
-    column in the screen padded by one blocked cell on each side.
-    """
+    """Return the highest edge neighbour (flat index) of a cell that is no summit; of equal ones the greater index."""
     return int(cell + stride(highest(cell, heights, width), width))
 
 
 @bare
 def above(cell: int, other: int, heights: Heights) -> bool:
-    """Return whether `cell` is above `other` in the total order: by clearance, then by flat index.
-
-    A cell is not above itself. `heights` : (cells,) squared clearances in squared half squares, flat. Flat indices are
-    row * width + column in the screen padded by one blocked cell on each side.
-    """
+    """Return whether `cell` is above `other` in the total order: by clearance, then by flat index."""
     return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
 
 
 @bare
 def stride(direction: int, width: int) -> int:
-    """Return the difference of flat indices of one step in a direction (0 east, 1 north, 2 west, 3 south).
-
-    `width` is that of the padded screen: 1 east, width north, -1 west, -width south. Flat indices are row * width +
-    column in the screen padded by one blocked cell on each side.
-    """
+    """Return the difference of flat indices of one step in a direction (0 east, 1 north, 2 west, 3 south)."""
     return (1 - (direction & 2)) * (width if direction & 1 else 1)
 
 
 @bare
 def beside(k: int, width: int) -> int:
-    """Return the difference of flat indices to the k-th of the eight neighbours, from the east counter-clockwise.
-
-    0 is east, 1 north-east, 2 north and so on; k counts modulo 8. `width` is that of the padded screen. Flat indices
-    are row * width + column in the screen padded by one blocked cell on each side.
-    """
+    """Return the difference of flat indices to the k-th of the eight neighbours, from the east counter-clockwise."""
     k %= 8
     if k < 4:
         return 1 if k == 0 else width + 2 - k

@@ -15,21 +15,7 @@ from geometry.skeleton.skeleton import KINDS, States, beside
 
 
 def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
-    """Return the thin skeleton as a raster.
-
-    Parameters
-    ----------
-    square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in squared half squares, (2 * clearance in squares)^2; 0 on blocked squares.
-    state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
-        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
-
-    Returns
-    -------
-    (rows, columns) bool
-        True on the squares of the skeleton; a new array without the padding, row 0 in the south.
-    """
+    """Return the thin skeleton as a raster."""
     line = state > 0
     reached = square == 0
     flood(line, reached, np.flatnonzero(reached).astype(np.int32), np.empty(square.size, np.int32))
@@ -41,17 +27,7 @@ def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
 
 @bare
 def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
-    """Set ``reached`` for all cells off the line that the seeds reach by sides and corners.
-
-    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
-
-    Parameters
-    ----------
-    line : (rows + 2, columns + 2) bool, the cells of the skeleton, which the flood does not enter.
-    reached : (rows + 2, columns + 2) bool, True on the seeds; changed.
-    seeds : (n,) int32, flat indices of cells to begin at.
-    stack : (cells,) int32, scratch.
-    """
+    """Set ``reached`` for all cells off the line that the seeds reach by sides and corners."""
     width, cells = line.shape[1], line.size
     lines, reach = line.reshape(-1), reached.reshape(-1)
     for seed in seeds:
@@ -70,16 +46,7 @@ def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
 
 @bare
 def thin(line: Bools, kind: States) -> bool:
-    """Remove, one after the other, all simple points of the line but its ends; return whether there were any.
-
-    A simple point is a cell whose removal changes neither components nor holes. Points that only the removals of this
-    pass make simple may be left: call again until False is returned.
-
-    Parameters
-    ----------
-    line : (rows + 2, columns + 2) bool, True on the cells of the line; changed. Its first and last row are left alone.
-    kind : (256,) uint8, KINDS of skeleton.py: by the set of neighbours on the line, 0 where they are one group.
-    """
+    """Remove, one after the other, all simple points of the line but its ends; return whether there were any."""
     width = line.shape[1]
     lines = line.reshape(-1)
     removed = False

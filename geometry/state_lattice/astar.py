@@ -39,32 +39,7 @@ def find_carrying_path(
     cost: Costs,
     parent: Costs,
 ) -> Longs:
-    """Return the nodes of the cheapest path from the first grasp to the goal, in order; empty if there is none.
-
-    A node is ((hold * 4 + quarter turn) * 9 + direction) * squares + place: index of the hold (the square from which
-    the robot grasps the body), quarter turn of the body 0..3, direction being pushed in as in PUSH_DIRECTIONS, number
-    of the square of the body's centroid in the padded table. The direction is NO_DIRECTION while the body lies. Costs
-    are whole numbers, COMMAND_COST for a command.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    remaining : (4, 9, squares) the heuristic, made with the same end_costs and redirect_cost.
-    end_costs : (4, squares) cost of ending at a pose, -1 off the goal.
-    grasp_costs : (holds,) cost of having walked to each hold and grasped the body; -1 where the robot cannot.
-    place : number of the square where the body lies, unturned.
-    redirect_cost : cost of going on in another direction in the same push.
-    weight : weight of the heuristic in quarters. ADMISSIBLE_WEIGHT finds the cheapest path. A larger weight finds a
-        path sooner that may cost more by the same factor.
-    max_settled : number of nodes that are settled at most; when they are used up the best end found so far counts.
-    cost, parent : scratch, a number for each node; all costs 0.
-
-    Returns
-    -------
-    (n,) int64 node numbers: from a node with the grasp after which the robot first moves the body, by one node for each
-    push by a square, turn, end of a push or change of grasp, to a node at which the body lies at the goal. Ties go to
-    the path that is further along, then to the least node number.
-    """
+    """Return the nodes of the cheapest path from the first grasp to the goal, in order; empty if there is none."""
     squares, holds = end_costs.shape[1], len(grasp_costs)
     total = len(cost)
     # The array `cost` holds one more than the cost, 0 for unknown: fresh zeros from numpy take no memory until written.
@@ -130,10 +105,7 @@ def find_carrying_path(
 
 @compiled
 def _path_to(parent: Costs, final: int) -> Longs:
-    """Return the nodes that lead to `final`, in order, itself the last: (n,) int64; empty if it is -1.
-
-    `parent` : the node before each node, -1 at the first.
-    """
+    """Return the nodes that lead to `final`, in order, itself the last: (n,) int64; empty if it is -1."""
     length, node = 0, final
     while node >= 0:
         length, node = length + 1, parent[node]
@@ -149,16 +121,7 @@ def _path_to(parent: Costs, final: int) -> Longs:
 def _write_successors(
     lattice: StateLattice, hold: int, k: int, m: int, p: int, redirect_cost: int, successor: Longs, step_cost: Longs
 ) -> int:
-    """Write the nodes to which one step with the body in hand leads, and their costs; return how many.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    hold, k, m, p : index of the hold, quarter turn, direction (NO_DIRECTION while the body lies) and place of the node.
-    redirect_cost : cost of going on in another direction in the same push.
-    successor, step_cost : (16,) output: node numbers, ((hold * 4 + quarter turn) * 9 + direction) * squares + place,
-        and costs of the step, COMMAND_COST for a command; only the first entries are written.
-    """
+    """Write the nodes to which one step with the body in hand leads, and their costs; return how many."""
     squares = len(lattice.solid)
     base = (hold * 4 + k) * 9
     robot = p + lattice.holds[k, hold]
@@ -202,16 +165,7 @@ def _write_successors(
 def _write_walk_costs(
     lattice: StateLattice, hold: int, k: int, p: int, walk_cost: Costs, seen: Costs, mark: int
 ) -> None:
-    """Write the cost of walking from a hold to each of the others while the body lies; -1 without a path.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    hold, k, p : index of the robot's hold, quarter turn and place of the body.
-    walk_cost : (holds,) output, COMMAND_COST for a command; the cost of the grasp is not in it.
-    seen : (squares,) scratch, written with `mark`.
-    mark : a number that `seen` does not hold yet.
-    """
+    """Write the cost of walking from a hold to each of the others while the body lies; -1 without a path."""
     for n in range(lattice.covered.first[k], lattice.covered.first[k + 1]):
         seen[p + lattice.covered.items[n]] = mark
     _flood_walk_costs(lattice, p + lattice.holds[k], p + lattice.holds[k, hold], walk_cost, seen, mark)
@@ -221,19 +175,7 @@ def _write_walk_costs(
 def _flood_walk_costs(
     lattice: StateLattice, targets: Longs, start: int, walk_cost: Costs, seen: Costs, mark: int
 ) -> None:
-    """Write the cost of walking from a square to each of the targets. Squares whose `seen` equals `mark` are closed.
-
-    Method: breadth-first search over four neighbours.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    targets : (holds,) number of the square of each hold.
-    start : number of the square where the walk begins.
-    walk_cost : (holds,) output, COMMAND_COST for a command; 0 where the robot stands, -1 where no path leads or the
-        hold is not to be used.
-    seen : (squares,) squares walked are marked with `mark`, too.
-    """
+    """Write the cost of walking from a square to each of the targets. Squares whose `seen` equals `mark` are closed."""
     waiting = 0
     for n in range(len(targets)):
         walk_cost[n] = -1
@@ -259,19 +201,7 @@ def _flood_walk_costs(
 
 @compiled
 def costs_to_first_grasp(lattice: StateLattice, place: int, start: int) -> Costs:
-    """Return the cost of walking from square `start` to each hold of the body, where it lies unturned, and grasping it.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    place : number of the square of the body's centroid, in the padded table.
-    start : number of the robot's square, in the padded table.
-
-    Returns
-    -------
-    (holds,) int32, in the order of the lattice's holds, COMMAND_COST for a command; -1 where no path leads or the hold
-    is not to be used.
-    """
+    """Return the cost of walking from square `start` to each hold of the body as it lies, and grasping it."""
     grasp_costs, seen = np.empty(len(lattice.grasp_cost), np.int32), np.zeros(len(lattice.solid), np.int32)
     for n in range(lattice.covered.first[0], lattice.covered.first[1]):
         seen[place + lattice.covered.items[n]] = 1

@@ -30,42 +30,23 @@ PUSH_DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), 
 
 @dataclass(frozen=True)
 class Footprints:
-    """The squares of a shape as (columns, rows) offsets from the square of its centroid.
+    """The squares of a shape as (columns, rows) offsets from the square of its centroid."""
 
-    Columns count to the east, rows to the north. All arrays are int64 and for the shape unturned, as it lies now.
-
-    Attributes
-    ----------
-    home : (column, row) of the centroid's square where the shape lies now, in the table.
-    holds : (n, 2) squares next to its own, by an edge or a corner, where the robot can stand to grasp it; sorted by
-        column, then row. If the robot already holds it, the robot's square is among them, wherever that is.
-    lying : (m, 2) squares that it covers.
-    steps : for each of the eight directions, as in PUSH_DIRECTIONS, (k, 2) squares met by a push of one square, those
-        at both ends included.
-    turns : for each hold, (k, 2) squares met by a quarter turn counter-clockwise about the middle of the hold, those at
-        both ends included.
-    """
-
-    home: tuple[int, int]
+    home: tuple[int, int]  # (column, row) of the centroid's square where the shape lies now, in the table
+    # (n, 2) squares next to its own, by an edge or a corner, where the robot can stand to grasp it; sorted by column,
+    # then row. If the robot already holds it, the robot's square is among them, wherever that is.
     holds: Longs
-    lying: Longs
+    lying: Longs  # (m, 2) squares that it covers
+    # For each of the eight directions, as in PUSH_DIRECTIONS, (k, 2) squares met by a push of one square, those at both
+    # ends included
     steps: tuple[Longs, ...]
+    # For each hold, (k, 2) squares met by a quarter turn counter-clockwise about the middle of the hold, those at both
+    # ends included
     turns: tuple[Longs, ...]
 
 
 def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
-    """Return the footprints of a shape whose centroid lies in the square (0, 0); `home` is (0, 0).
-
-    They hold (columns, rows) offsets from that square: `holds` from which to grasp, sorted by column, then row (or as
-    given); `lying` squares covered; `steps` squares met by a push in each of eight directions; `turns` squares met by a
-    quarter turn counter-clockwise about each hold.
-
-    Parameters
-    ----------
-    shape : shapely Polygon, in squares, drawn so that its centroid lies in the unit square from (0, 0) to (1, 1).
-    own_square : (column, row) of the robot, in the same frame, if it already holds the shape.
-    holds : (n, 2) the holds to compute turns for; None for all squares next to the shape, and own_square.
-    """
+    """Return the footprints of a shape whose centroid lies in the square (0, 0); `home` is (0, 0)."""
     lying = _covered_offsets(shape)
     holds = _squares_about(lying, own_square) if holds is None else holds
     body = ContactBody(shape)
@@ -74,21 +55,14 @@ def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds:
 
 
 def quarter(offsets: Longs, count: int) -> Longs:
-    """Return offsets (n, 2) of columns, rows after `count` quarter turns counter-clockwise about the square (0, 0).
-
-    In the same order; `offsets` itself when `count` is a multiple of four. They turn about its middle. A negative
-    `count` turns clockwise.
-    """
+    """Return offsets (n, 2) of columns, rows after `count` quarter turns counter-clockwise about the square (0, 0)."""
     for _ in range(count % 4):
         offsets = np.column_stack([-offsets[:, 1], offsets[:, 0]])
     return offsets
 
 
 def _covered_offsets(shape: Any) -> Longs:
-    """Return the squares that a shape covers as offsets (n, 2) column, row from the square (0, 0).
-
-    Sorted by row, then column. `shape` : shapely Polygon, in squares, with the square (0, 0) from (0, 0) to (1, 1).
-    """
+    """Return the squares that a shape covers as offsets (n, 2) column, row from the square (0, 0)."""
     reach = math.ceil(max(abs(v) for v in shape.bounds)) + 1
     rows, columns = np.nonzero(squares(affinity.translate(shape, reach, reach), 2 * reach, 2 * reach))
     offsets: Longs = np.column_stack([columns, rows]).astype(np.int64) - reach
@@ -96,22 +70,14 @@ def _covered_offsets(shape: Any) -> Longs:
 
 
 def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
-    """Return the squares that touch the given ones by an edge or a corner, and `own_square`: offsets (n, 2).
-
-    The given ones themselves are left out. Columns and rows, sorted by column, then row. `lying` : (m, 2) the given
-    ones. `own_square` : (column, row), or None for none.
-    """
+    """Return the squares that touch the given ones by an edge or a corner, and `own_square`: offsets (n, 2)."""
     covered = {(int(x), int(y)) for x, y in lying}
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in PUSH_DIRECTIONS} - covered
     return np.array(sorted(about | ({own_square} if own_square else set())), dtype=np.int64).reshape(-1, 2)
 
 
 def _squares_of_push(shape: Any, lying: Longs, dx: int, dy: int) -> Longs:
-    """Return the squares met by a push of a shape by (dx, dy), one square, both ends included: offsets (n, 2).
-
-    Columns and rows, from the square of the centroid before the push; sorted by column, then row, without repeats.
-    `lying` : (m, 2) the squares that the shape covers before. `dx`, `dy` : -1, 0 or 1, to the east and to the north.
-    """
+    """Return the squares met by a push of a shape by (dx, dy), one square, both ends included: offsets (n, 2)."""
     moved = lying + np.array([dx, dy])
     if dx == 0 or dy == 0:
         return np.unique(np.vstack([lying, moved]), axis=0)
@@ -119,10 +85,7 @@ def _squares_of_push(shape: Any, lying: Longs, dx: int, dy: int) -> Longs:
 
 
 def swept_polygon(shape: Any, dx: float, dy: float) -> Any:
-    """Return the polygon that a shape sweeps in a push by (dx, dy) squares, both ends included.
-
-    shapely Polygon or MultiPolygon, in the frame of `shape`, a shapely Polygon. Holes are not swept.
-    """
+    """Return the polygon that a shape sweeps in a push by (dx, dy) squares, both ends included."""
     parts = [shape, affinity.translate(shape, dx, dy)]
     for (ax, ay), (bx, by) in pairwise(shape.exterior.coords):
         side = shapely.Polygon([(ax, ay), (bx, by), (bx + dx, by + dy), (ax + dx, ay + dy)])
@@ -131,16 +94,7 @@ def swept_polygon(shape: Any, dx: float, dy: float) -> Any:
 
 
 def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
-    """Return the squares met by a quarter turn counter-clockwise about the middle of square `hold`: offsets (n, 2).
-
-    Columns and rows from the square (0, 0), sorted by row, then column; both ends of the turn included.
-
-    Parameters
-    ----------
-    body : the shape with its centroid in the square (0, 0).
-    lying : (m, 2) squares that it covers.
-    hold : (2,) column, row.
-    """
+    """Return the squares met by a quarter turn counter-clockwise about the middle of square `hold`: offsets (n, 2)."""
     pivot = hold + 0.5
     reach = math.ceil(float(np.hypot(*(body.edges[:, :2] - pivot).T).max())) + 1
     met = np.zeros((2 * reach + 1, 2 * reach + 1), np.bool_)
@@ -152,11 +106,7 @@ def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
 
 
 def _unit_square_surface() -> tuple[Floats, Floats, Floats]:
-    """Return hull (4, 7), skin (4, 7) and chunks (1, 6) of the square (0, 0), from (0, 0) to (1, 1).
-
-    Hull and skin are edges, rows x0, y0, x1, y1, outward normal x and y, length: the sides, and the same drawn inward
-    by SKIN_DEPTH; chunks are rows first, stop, x0, y0, x1, y1: a range of edges and its bounding box. All in squares.
-    """
+    """Return hull (4, 7), skin (4, 7) and chunks (1, 6) of the square (0, 0), from (0, 0) to (1, 1)."""
     surface = Obstacles([shapely.box(0, 0, 1, 1)]).surface
     return surface.hull, surface.skin, surface.chunks
 
@@ -168,18 +118,7 @@ UNIT_SQUARE_SURFACE = _unit_square_surface()
 def _mark_met(
     corners: Floats, body: Floats, met: Bools, cx: float, cy: float, hull: Floats, skin: Floats, chunks: Floats
 ) -> None:
-    """Mark the squares of a window about (cx, cy) that a body runs into in a quarter turn counter-clockwise about it.
-
-    Parameters
-    ----------
-    corners : rows that begin with x, y: corners of the body, squares.
-    body : (m, 7) its edges.
-    met : (2 window + 1, 2 window + 1) bool, [row, column], row 0 in the south, its middle square the one about (cx,
-        cy); written. Squares already marked are skipped.
-    cx, cy : the pivot, the middle of a square, in the frame of the body.
-    hull, skin, chunks : of the square (0, 0): its sides (4, 7), the same drawn inward (4, 7), their range and bounding
-        box (1, 6).
-    """
+    """Mark the squares of a window about (cx, cy) that a body runs into in a quarter turn counter-clockwise."""
     window = len(met) // 2
     squared_radius = 0.0
     for corner in corners:

@@ -21,21 +21,7 @@ QUEUE_ENTRIES_PER_POSE = 64  # bounds the queue: far more than occur, and memory
 
 @compiled
 def cost_to_go(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
-    """Return the least cost to go from every pose, by quarter turn, direction of the push under way, and place.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    end_costs : (4, squares) int32, cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
-    redirect_cost : cost of going on in another direction in the same push. COMMAND_COST stands for starting another
-        push.
-
-    Returns
-    -------
-    (4, 9, squares) int32: quarter turn of the body, direction as in PUSH_DIRECTIONS with NO_DIRECTION for a body that
-    lies, number of the square of its centroid in the padded table. COMMAND_COST stands for a command. COST_UNREACHABLE
-    where the goal cannot be reached; -1 where a body that lies would overlap something.
-    """
+    """Return the least cost to go from every pose, by quarter turn, direction of the push under way, and place."""
     squares = end_costs.shape[1]
     remaining = np.full((4, 9, squares), COST_UNREACHABLE, np.int32)
     size = QUEUE_ENTRIES_PER_POSE * 4 * squares
@@ -73,17 +59,7 @@ def cost_to_go(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> C
 
 @compiled
 def can_reach_end(lattice: StateLattice, end_costs: Costs, place: int) -> bool:
-    """Return whether any end can be reached from a place, unturned: what `cost_to_go` would tell, much sooner.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    end_costs : (4, squares) int32, cost of ending at a pose, -1 where the goal is not met.
-    place : number of the square where the body lies, unturned.
-
-    Method: the poses about the place and those about the ends are flooded in turn, until the floods meet, or one has
-    nowhere left to go: the smaller one of two that are apart decides.
-    """
+    """Return whether any end can be reached from a place, unturned: what `cost_to_go` would tell, much sooner."""
     squares = end_costs.shape[1]
     if not lattice.lies[0, place]:
         return False
@@ -109,18 +85,7 @@ def can_reach_end(lattice: StateLattice, end_costs: Costs, place: int) -> bool:
 
 @compiled
 def _flood_on(lattice: StateLattice, known: Bools, poses: Longs, numbers: Longs, backwards: bool) -> bool:
-    """Add the poses that one pose of a flood leads to; return False when all have led wherever they lead.
-
-    Pushes come first: where these lead on, few turns are left to be tried.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    known : (4 squares,) bool, whether a pose, quarter turn * squares + place, was reached; changed.
-    poses : (4 squares,) those that were reached, in order; changed.
-    numbers : (3,) of these: how many there are, how many were pushed from, how many were turned from; changed.
-    backwards : whether poses that lead to the flood are added, in place of those that it leads to.
-    """
+    """Add the poses that one pose of a flood leads to; return False when all have led wherever they lead."""
     squares = lattice.lies.shape[1]
     if numbers[1] < numbers[0]:
         k, p = poses[numbers[1]] // squares, poses[numbers[1]] % squares
@@ -150,17 +115,7 @@ def _flood_on(lattice: StateLattice, known: Bools, poses: Longs, numbers: Longs,
 
 @compiled
 def _relax_turns(lattice: StateLattice, remaining: Costs, queue: Queue, k: int, p: int, cost_before: int) -> None:
-    """Relax backwards the quarter and half turns, about every hold, that end at a pose.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    remaining : (4, 9, squares) the costs to go so far; lowered where a turn to the pose is cheaper.
-    queue : poses still to be looked at, as (place << 8) + (direction << 4) + quarter turn; those with lower costs are
-        put on it.
-    k, p : quarter turn and place (number of the centroid's square) of the pose.
-    cost_before : its cost to go plus that of a turn.
-    """
+    """Relax backwards the quarter and half turns, about every hold, that end at a pose."""
     for hold in range(len(lattice.grasp_cost)):
         if lattice.grasp_cost[hold] < 0 or lattice.solid[p + lattice.holds[k, hold]]:
             continue
@@ -184,17 +139,7 @@ def _relax_turns(lattice: StateLattice, remaining: Costs, queue: Queue, k: int, 
 
 @compiled
 def _relax_push_step(lattice: StateLattice, remaining: Costs, queue: Queue, k: int, m: int, p: int, now: int) -> None:
-    """Relax backwards one step of a push: to the same push under way, and to where it began.
-
-    Parameters
-    ----------
-    lattice : the state lattice.
-    remaining : (4, 9, squares) the costs to go so far; lowered where a push to the pose is cheaper.
-    queue : poses still to be looked at, as (place << 8) + (direction << 4) + quarter turn; those with lower costs are
-        put on it.
-    k, m, p : quarter turn, direction and place (number of the centroid's square) after the step.
-    now : the cost to go from there, COMMAND_COST for a command.
-    """
+    """Relax backwards one step of a push: to the same push under way, and to where it began."""
     place_before = p - lattice.steps[m]
     price = lattice.push_cost[k, m, place_before]
     if price == 0:

@@ -22,37 +22,13 @@ SURE_CLASS = 62  # percent: a class of shapes that fits best and is not ahead, b
 
 
 class AbsenceExplainer:
-    """Explains why facts of the world model are not believed.
-
-    Parameters
-    ----------
-    facts : explains the facts that are.
-    rule_files : the paths of the files with users' rules that took part in the run.
-    """
+    """Explains why facts of the world model are not believed."""
 
     def __init__(self, facts: FactExplainer, rule_files: Sequence[str] = ()) -> None:
         self._facts, self._rule_files = facts, tuple(rule_files)
 
     def explain(self, fact: str, step: int) -> Reason:
-        """Return why a fact is not believed at a step.
-
-        Parameters
-        ----------
-        fact : a fact of the world model without variables, but for its confidence: a name with a capital letter there
-            stands for the surest that the rules give.
-        step : the number of the step.
-
-        Returns
-        -------
-        Reason
-            In `data` it has `missing` and `in_way`: facts that its encoding would have to be given, and given facts
-            that would have to be absent; no member can be left out. `partial` says whether a smaller change may exist.
-            For facts that no encoding derives, it names what is believed in their place.
-
-        Raises
-        ------
-        BadInputError : the fact is believed.
-        """
+        """Return why a fact is not believed at a step."""
         wanted = plain_fact(fact)
         if wanted in self._facts.record.steps[step].fact_set:
             raise _error(wanted, f"this is believed at step {step}: why tells the reason")
@@ -87,10 +63,7 @@ class AbsenceExplainer:
         return self._absence(wanted, step, call, wanted, step)
 
     def _decisions(self, fact: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
-        """Yield the answer of an encoding that could have derived a fact, the atom that would have been it, its step.
-
-        The newest answer comes first.
-        """
+        """Yield the answer of an encoding that could derive a fact, the atom that would be it, its step."""
         name, arguments = atom_parts(fact)
         now = self._facts.record.steps[step]
         if name == "kind" and len(arguments) == 3 and arguments[0] in now.regions:
@@ -122,10 +95,8 @@ class AbsenceExplainer:
                 yield call, atom, step
 
     def _newest(self, encoding: str, step: int, needs: str) -> tuple[SolverCall, int]:
-        """Return the newest answer of an encoding up to a step whose facts have one that begins with `needs`; its step.
-
-        Where there is none, one to which nothing was given: what is missing is the same then.
-        """
+        """Return the newest answer of an encoding up to a step whose facts have one that begins with `needs`."""
+        # Its step.
         for number in range(step, self._facts.record.steps[step].first_impression - 1, -1):
             calls: Sequence[SolverCall] = self._facts.record.decisions(number)
             told = [one for one in calls if one.encoding == encoding and any(f.startswith(needs) for f in one.facts)]
@@ -177,10 +148,7 @@ class AbsenceExplainer:
         return Reason(f"not {fact}", found.sentence, ReasonKind.NEGATION, f"step {step}", below, data)
 
     def _instead(self, fact: str, step: int) -> Reason:
-        """Return why a fact is not believed that no encoding derives: it is measured, and something else was.
-
-        Facts of the task plan are stated with the plan, and what is in hand was grasped.
-        """
+        """Return why a fact is not believed that no encoding derives: it is measured, and something else was."""
         instead = tuple(self._alternatives(fact, step))
         name, arguments = atom_parts(fact)
         thing = (arguments or ("",))[0]

@@ -30,35 +30,14 @@ class AnswerProver(Protocol):
 
 
 class FactExplainer:
-    """Explains the facts of the world model of a run.
-
-    Parameters
-    ----------
-    record : the record of the run.
-    prove : explains the answers of encodings.
-
-    Attributes
-    ----------
-    record : as given.
-    """
+    """Explains the facts of the world model of a run."""
 
     def __init__(self, record: Record, prove: AnswerProver) -> None:
         self.record = record
         self._prove = prove
 
     def explain(self, fact: str, step: int) -> Reason:
-        """Return the reason why a fact is believed at a step.
-
-        Parameters
-        ----------
-        fact : a fact of the world model, such as `shape(o1,square,95)`; the robot may be called utak.
-        step : the number of the step.
-
-        Raises
-        ------
-        BadInputError : the fact is not believed then; the hint names what is believed instead.
-        MissingRecordError : the episode does not record what is needed.
-        """
+        """Return the reason why a fact is believed at a step."""
         wanted = plain_fact(fact)
         found = self.reason(wanted, step)
         if found is None:
@@ -78,10 +57,7 @@ class FactExplainer:
         return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
-        """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it.
-
-        step : the step from which to look back. oldest : the first step that counts.
-        """
+        """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it."""
         found = self.record.last_answer(step, encoding, atom, oldest)
         if found is None:
             return None

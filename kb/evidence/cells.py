@@ -11,25 +11,7 @@ from kb.perception.retina import FIELDS, OWN_FIELD
 
 
 def explain_cell(beliefs: FactExplainer, cell: int, step: int) -> Reason:
-    """Return the account of a cell of the impression of a step.
-
-    Parameters
-    ----------
-    beliefs : explains the facts of the run.
-    cell : the number of the cell, 0 to 159, in the order of an impression.
-    step : the number of the step, which is that of its impression.
-
-    Returns
-    -------
-    Reason
-        It says what the cell shows, what the map allowed it to show, and whether it is predicted, explained (with the
-        fact that explains it) or noise.
-
-    Raises
-    ------
-    BadInputError : there is no such cell.
-    MissingRecordError : the episode does not record what is needed.
-    """
+    """Return the account of a cell of the impression of a step."""
     if not 0 <= cell < len(FIELDS):
         what = f"there is no cell {cell}: an impression has the cells 0 to {len(FIELDS) - 1}"
         raise BadInputError([Problem("why", SourceSpan(1, 1, 1), what, f"cell {cell}")])
@@ -76,10 +58,7 @@ def _moved_things(beliefs: FactExplainer, cell: int, step: int) -> tuple[Reason,
 
 
 def _earlier(record: Record, cell: int, step: int, how: str) -> Reason:
-    """Return the reason that names cells of earlier impressions over the squares of a cell.
-
-    how : what they did, in words.
-    """
+    """Return the reason that names cells of earlier impressions over the squares of a cell."""
     found = [one for one in sightings(record, step, squares_under(record, cell, step)) if one.impression < step]
     found.sort(key=lambda one: (one.side, -one.impression))
     shown = list({(one.impression, one.cell): one for one in found}.values())[:SHOWN_CELLS]

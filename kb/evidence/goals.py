@@ -42,34 +42,14 @@ check_goal_table(GOAL_FACTS, "GOAL_FACTS in kb/evidence/goals.py")
 
 @dataclass(frozen=True)
 class RecordedTask:
-    """The task of a run and its end, as an episode states them.
+    """The task of a run and its end, as an episode states them."""
 
-    Attributes
-    ----------
-    goals : the goals in the order of goal.lp, as text.
-    result : the end, with the keys verdict and reason; None while the run goes on.
-    """
-
-    goals: Sequence[str]
-    result: Mapping[str, Any] | None = None
+    goals: Sequence[str]  # the goals in the order of goal.lp, as text.
+    result: Mapping[str, Any] | None = None  # the end, with the keys verdict and reason; None while the run goes on
 
 
 def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Reason:
-    """Return the reason of the command before the impression of a step: goal, facts, and what was chosen among what.
-
-    Parameters
-    ----------
-    beliefs : explains the facts of the run.
-    task : the task.
-    step : the number of the step; the command was decided on what was believed one step before.
-
-    Returns
-    -------
-    Reason
-        It rests on the step of the task plan that it serves, on the goals with the facts that they are about, on what
-        parameters mean, and on the choices of the planner's encodings, each with the alternatives that were not chosen
-        or were refuted.
-    """
+    """Return the reason of the command before the impression of a step: goal, facts, and what was chosen among what."""
     now = beliefs.record.steps[step]
     if now.action is None:
         return Reason("the robot wakes", "every run begins so", ReasonKind.CONVENTION, "step 0")
@@ -80,10 +60,7 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
 
 
 def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None:
-    """Return the reason of the verdict: the rules of the agenda, what was planned, the goals, and the last choices.
-
-    None while the run goes on.
-    """
+    """Return the reason of the verdict: the rules of the agenda, what was planned, the goals, and the last choices."""
     if task.result is None:
         return None
     last = len(beliefs.record.steps) - 1
@@ -94,14 +71,7 @@ def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None
 
 
 def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
-    """Return a goal with the facts that it is about and what its parameters mean, as believed at a step.
-
-    Parameters
-    ----------
-    beliefs : explains the facts of the run.
-    goal : the goal as goal.lp states it, without a full stop.
-    step : the number of the step.
-    """
+    """Return a goal with the facts that it is about and what its parameters mean, as believed at a step."""
     name, arguments = atom_parts(goal)
     if name in WRAPPING_GOALS:
         name, arguments = atom_parts(arguments[0])

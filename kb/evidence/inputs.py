@@ -31,29 +31,15 @@ WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal
 
 
 class Given(NamedTuple):
-    """An input of an encoding, in the decision of some step.
+    """An input of an encoding, in the decision of some step."""
 
-    Attributes
-    ----------
-    atom : the input, as text.
-    call : the decision.
-    step : the step whose beliefs the decision was about.
-    """
-
-    atom: str
-    call: SolverCall
-    step: int
+    atom: str  # the input, as text
+    call: SolverCall  # the decision
+    step: int  # the step whose beliefs the decision was about
 
 
 def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int], Reason | None]) -> Reason:
-    """Return the reason why an encoding was given an atom, down to cells, touches, commands or the task.
-
-    Parameters
-    ----------
-    record : the record of the run.
-    given : the input.
-    fact_reason : returns the reason of a fact of the world model at a step; None when it is not believed then.
-    """
+    """Return the reason why an encoding was given an atom, down to cells, touches, commands or the task."""
     name, arguments = atom_parts(given.atom)
     says = words_of(given.call.encoding, given.atom)
     if name in AGENDA_INPUTS:

@@ -32,17 +32,7 @@ class PlanExplainer(Protocol):
 
 
 def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
-    """Return the reason of a fact of the task plan at a step.
-
-    A step of the plan rests on the decision of the encoding `task`, on the goals that it serves, and on the refutations
-    that concern what it brings. What the task states, and what geometry said, are leaves.
-
-    Parameters
-    ----------
-    beliefs : explains the facts of the run.
-    fact : a fact of the plan that the step states, without a full stop.
-    step : the number of the step.
-    """
+    """Return the reason of a fact of the task plan at a step."""
     name, arguments = atom_parts(fact)
     says = _in_words(beliefs, name, arguments, step) or words_of("belief", fact)
     if name == "means":
@@ -56,13 +46,7 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
 
 
 def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
-    """Yield the reason of the present step of the plan at a step of the run, or of goals that no plan attains.
-
-    Parameters
-    ----------
-    beliefs : explains the facts of the run.
-    step : the number of the step of the run.
-    """
+    """Yield the reason of the present step of the plan at a step of the run, or of goals that no plan attains."""
     for fact in beliefs.record.steps[step].facts:
         if fact.startswith(("plan(0,", "unmet(")):
             yield plan_fact_reason(beliefs, fact, step)
@@ -132,10 +116,7 @@ def _refutations_of_goal(beliefs: PlanExplainer, goal: str, step: int) -> Iterat
 
 
 def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Iterator[Reason]:
-    """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it.
-
-    After each that a thing moved aside makes room for, the goals of the steps of the plan for which it does.
-    """
+    """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it."""
     facts = beliefs.record.steps[step].facts
     action, arguments = atom_parts(planned)
     if action in SETTLING_WORDS:
@@ -181,27 +162,14 @@ def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step:
 
 
 def _decided(beliefs: PlanExplainer, number: int, planned: str, step: int) -> Iterator[Reason]:
-    """Yield why the encoding `task` chose a step of the plan; nothing when the record does not tell.
-
-    number : the number of the plan's step, 0 for the present one. planned : the step, or go(D) for a door on its way.
-    """
+    """Yield why the encoding `task` chose a step of the plan; nothing when the record does not tell."""
     for call, atom, at in planned_choice(beliefs.record, str(number), planned, step):
         if atom in (call.answer or ()):
             yield beliefs.prove(call, atom, at)
 
 
 def planned_choice(record: Record, number: str, planned: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
-    """Yield the decision of the plan of a step, the atom that says there that the plan has some step, and its step.
-
-    Nothing when the step of the run has no plan.
-
-    Parameters
-    ----------
-    record : the record of the run.
-    number : the number of the plan's step, 0 for the present one, as text.
-    planned : the plan's step, such as carry(o1,g1_r2), or go(D) for a door on its way.
-    step : the number of the step of the run.
-    """
+    """Yield the decision of the plan of a step, the atom that says there that the plan has some step, and its step."""
     found = _decision(record, step)
     left = sum(1 for fact in record.steps[step].facts if fact.startswith("plan("))
     if found is None or not left or not number.isdigit():

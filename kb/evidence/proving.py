@@ -27,39 +27,22 @@ KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
 
 
 class EncodingProver:
-    """Explains the answers of encodings by the rules that derived them; satisfies `kb.evidence.beliefs.AnswerProver`.
+    """Explains the answers of encodings by the rules that derived them."""
 
-    Parameters
-    ----------
-    rule_files : the paths of the files with users' rules that took part in the run.
-    """
+    # Satisfies `kb.evidence.beliefs.AnswerProver`.
 
     def __init__(self, rule_files: Sequence[str] = ()) -> None:
         self._rule_files = tuple(rule_files)
 
     def __call__(self, call: SolverCall, atom: str, leaf: Callable[[str], Reason]) -> Reason:
-        """Return the reason why an answer holds an atom.
-
-        Parameters
-        ----------
-        call : the answer.
-        atom : the atom, as text.
-        leaf : returns the reason of a fact that the encoding was given.
-
-        Raises
-        ------
-        kb.explanation.programs.ExplanationError : the record is none of an answer of this encoding.
-        """
+        """Return the reason why an answer holds an atom."""
         proof = explain_decision(call.encoding, call.facts, call.answer or (), atom, self._rule_files)
         return reason_of_proof(proof.root, leaf)
 
 
 @lru_cache(maxsize=4096)
 def words_of(encoding: str, atom: str) -> str:
-    """Return an atom of an encoding in plain words, as the encoding says its predicate reads; '' where it does not.
-
-    encoding : its name without `.lp`; `belief` for facts of the world model. atom : the atom, as text.
-    """
+    """Return an atom of an encoding in plain words, as the encoding says its predicate reads; '' where it does not."""
     words = atom_words(atom, decision_program(encoding).words)
     return "" if words == atom else words
 
@@ -71,10 +54,7 @@ def query_predicates(rule_files: Sequence[str]) -> frozenset[Signature]:
 
 
 def call_deriving(calls: Sequence[SolverCall], signature: Signature, rule_files: Sequence[str]) -> SolverCall | None:
-    """Return the newest of some answers in whose encoding users' rules define a predicate; None for none.
-
-    None also for predicates that they define for queries, too. calls : the answers, oldest first.
-    """
+    """Return the newest of some answers in whose encoding users' rules define a predicate; None for none."""
     if not rule_files or signature in query_predicates(rule_files):
         return None
     rules, newest_first = read_rules(tuple(rule_files)), tuple(reversed(calls))
@@ -107,27 +87,12 @@ def unknown_predicate(text: str, signature: Signature, rule_files: Sequence[str]
 def prove_query_atom(
     facts: Sequence[str], atom: str, leaf: Callable[[str], Reason], rule_files: Sequence[str] = ()
 ) -> Reason:
-    """Return the reason why an atom holds in queries: one that users' rules derive, or `object(N)`.
-
-    Parameters
-    ----------
-    facts : the world model, as text.
-    atom : the atom, without variables.
-    leaf : returns the reason of a believed fact.
-    rule_files : the paths of the files with users' rules.
-
-    Raises
-    ------
-    kb.explanation.programs.ExplanationError : the atom does not certainly hold.
-    """
+    """Return the reason why an atom holds in queries: one that users' rules derive, or `object(N)`."""
     return reason_of_proof(explain_query_atom(facts, atom, rule_files).root, leaf)
 
 
 def reason_of_proof(root: ProofNode, leaf: Callable[[str], Reason]) -> Reason:
-    """Return the reason of a node of a proof; proofs may be higher than Python's limit on recursion.
-
-    leaf : returns the reason of a given fact.
-    """
+    """Return the reason of a node of a proof; proofs may be higher than Python's limit on recursion."""
     known: dict[int, Reason] = {}  # by the identity of the nodes
     waiting = [root]
     while waiting:

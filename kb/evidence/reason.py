@@ -55,30 +55,18 @@ LEAF_KINDS = frozenset(ReasonKind) - {ReasonKind.FACT, ReasonKind.RULE, ReasonKi
 
 @dataclass(frozen=True)
 class Reason:
-    """A claim with its reason.
+    """A claim with its reason."""
 
-    Attributes
-    ----------
-    claim : what holds: a fact or an atom as text, or a statement in words.
-    because : why, in words; '' where the claim says it all.
-    kind : the kind of the reason.
-    source : where the reason stands, such as `kb/asp/rooms.lp:26` or `impression 3`; '' where it stands nowhere.
-    rests_on : the reasons of what it rests on.
-    data : the values behind it, ready for JSON: cells, places, widths.
-    """
-
-    claim: str
-    because: str
-    kind: ReasonKind
+    claim: str  # what holds: a fact or an atom as text, or a statement in words
+    because: str  # why, in words; '' where the claim says it all
+    kind: ReasonKind  # the kind of the reason
+    # Where the reason stands, such as `kb/asp/rooms.lp:26` or `impression 3`; '' where it stands nowhere.
     source: str = ""
-    rests_on: tuple["Reason", ...] = ()
-    data: dict[str, Any] = field(default_factory=dict)
+    rests_on: tuple["Reason", ...] = ()  # the reasons of what it rests on
+    data: dict[str, Any] = field(default_factory=dict)  # the values behind it, ready for JSON: cells, places, widths
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the tree as JSON values; keys without a value are left out.
-
-        At most MAX_LEVELS levels are written: where more follow, `cut` is true.
-        """
+        """Return the tree as JSON values; keys without a value are left out."""
         return self._entry(MAX_LEVELS)
 
     def _entry(self, levels: int) -> dict[str, Any]:
@@ -104,11 +92,7 @@ class Reason:
                 waiting += reversed(reason.rests_on)
 
     def text(self, depth: Depth = Depth.MID) -> str:
-        """Return the tree as indented lines.
-
-        depth : `short` for one line, `mid` for MID_LEVELS levels, `long` for MAX_LEVELS. What stands in the tree before
-            is not written again.
-        """
+        """Return the tree as indented lines."""
         levels = {Depth.SHORT: 1, Depth.MID: MID_LEVELS, Depth.LONG: MAX_LEVELS}[depth]
         return "\n".join(_lines(self, levels, "", set()))
 
@@ -118,10 +102,7 @@ class Reason:
 
 
 def _lines(reason: Reason, levels: int, indent: str, written: set[tuple[str, str]]) -> Iterator[str]:
-    """Yield the lines of a tree: `levels` levels of it.
-
-    written : claims and reasons that were written before; grows.
-    """
+    """Yield the lines of a tree: `levels` levels of it."""
     because = f": {reason.because}" if reason.because else ""
     source = f"  [{reason.source}]" if reason.source else ""
     key = (reason.claim, reason.because)

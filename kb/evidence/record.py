@@ -16,20 +16,7 @@ class MissingRecordError(Exception):
 
 
 class RecordedStep:
-    """The record of one step, as the robot wrote it.
-
-    Parameters
-    ----------
-    line : the step's line of the episode.
-    before : the step before it; None for step 0.
-
-    Attributes
-    ----------
-    number : the number of the step; the impression has the same one.
-    action : the command before the impression, as in the episode; None on waking.
-    retina : the 160 gray levels. touch : the 8 colours or None, clockwise from north in the robot frame.
-    why : the reason of the command, in words.
-    """
+    """The record of one step, as the robot wrote it."""
 
     def __init__(self, line: RecordLine, before: "RecordedStep | None") -> None:
         self.number: int = line["step"]
@@ -48,10 +35,7 @@ class RecordedStep:
 
     @cached_property
     def facts(self) -> tuple[str, ...]:
-        """The world model as facts without full stops, in the order of the episode.
-
-        Older episodes state bindings beside their facts; these follow as facts.
-        """
+        """The world model as facts without full stops, in the order of the episode."""
         found = [str(fact).removesuffix(".") for fact in self._recorded("facts")]
         bindings = [f"bound({parameter},{node})" for parameter, node in sorted(self.bound.items())]
         return tuple(dict.fromkeys((*found, *bindings)))
@@ -139,16 +123,7 @@ class RecordedStep:
 
 
 class Record:
-    """The steps of a run.
-
-    Parameters
-    ----------
-    lines : the lines of the steps of an episode, from step 0 on without a gap.
-
-    Attributes
-    ----------
-    steps : what the robot recorded in each of them.
-    """
+    """The steps of a run."""
 
     def __init__(self, lines: Sequence[RecordLine]) -> None:
         steps: list[RecordedStep] = []
@@ -158,10 +133,9 @@ class Record:
         self._decisions: dict[int, tuple[SolverCall, ...]] = {}
 
     def decisions(self, step: int) -> tuple[SolverCall, ...]:
-        """Return the answers of encodings that a step records, in order; those written elsewhere are looked up there.
-
-        Raises MissingRecordError when the episode does not record them.
-        """
+        """Return the answers of encodings that a step records, in order."""
+        # Those written elsewhere are looked up there.
+        # Raises MissingRecordError when the episode does not record them.
         if step not in self._decisions:
             self._decisions[step] = tuple(self._call(entry) for entry in self.steps[step].entries())
         return self._decisions[step]
@@ -175,20 +149,8 @@ class Record:
         return SolverCall(encoding, tuple(facts), None if answer is None else tuple(answer), tuple(about))
 
     def last_answer(self, step: int, encoding: str, atom: str, oldest: int = 0) -> tuple[int, SolverCall] | None:
-        """Return the newest answer of an encoding, up to a step, that holds an atom, with the step of its record.
-
-        Parameters
-        ----------
-        step : the step from which to look back.
-        encoding : its name, without `.lp`.
-        atom : a shown atom, as text.
-        oldest : the step from which on answers count.
-
-        Returns
-        -------
-        (int, SolverCall) or None
-            None when no answer holds it.
-        """
+        """Return the newest answer of an encoding, up to a step, that holds an atom, with the step of its record."""
+        # None when no answer holds it.
         for number in range(step, oldest - 1, -1):
             for call in reversed(self.decisions(number)):
                 if call.encoding == encoding and call.answer is not None and atom in call.answer:

@@ -15,22 +15,13 @@ REACH = 25  # squares from the robot's own square within which fields lie, at an
 
 
 class Sighting(NamedTuple):
-    """A cell that shows a square.
+    """A cell that shows a square."""
 
-    Attributes
-    ----------
-    impression : the number of the impression.
-    cell : the number of the cell, 0 to 159, in the order of an impression.
-    level : the gray level that it shows, 0 to 7.
-    side : the side of the cell, in squares.
-    square : the square (column, row), map frame.
-    """
-
-    impression: int
-    cell: int
-    level: int
-    side: int
-    square: Square
+    impression: int  # the number of the impression
+    cell: int  # the number of the cell, 0 to 159, in the order of an impression
+    level: int  # the gray level that it shows, 0 to 7
+    side: int  # the side of the cell, in squares
+    square: Square  # the square (column, row), map frame
 
     def __str__(self) -> str:
         size = "one square" if self.side == 1 else f"{self.side} x {self.side} squares"
@@ -39,11 +30,7 @@ class Sighting(NamedTuple):
 
 @lru_cache(maxsize=128)
 def cells_by_offset(angle: int) -> Ints:
-    """Return the number of the cell over each offset from the robot's own square: (51, 51) int32, -1 for none.
-
-    Offsets are those of the map frame, [north + REACH, east + REACH]. Where several cells sample a square, the smallest
-    counts. angle : degrees by which the robot frame is turned against the map frame.
-    """
+    """Return the number of the cell over each offset from the robot's own square: (51, 51) int32, -1 for none."""
     plan = np.full((2 * REACH + 1, 2 * REACH + 1), -1, np.int32)
     samples = Frame(angle).samples()
     for cell in sorted(range(len(FIELDS)), key=lambda number: -FIELDS[number].side):
@@ -54,19 +41,7 @@ def cells_by_offset(angle: int) -> Ints:
 
 
 def sightings(record: Record, step: int, squares: Iterable[Square]) -> list[Sighting]:
-    """Return all cells that show one of some squares, by the beliefs of a step.
-
-    Parameters
-    ----------
-    record : the record of the run.
-    step : the step whose frame and places count; impressions after it do not.
-    squares : squares (column, row), map frame.
-
-    Returns
-    -------
-    list of Sighting
-        By square, in the order given, then by impression.
-    """
+    """Return all cells that show one of some squares, by the beliefs of a step."""
     now = record.steps[step]
     plan = cells_by_offset(now.frame.angle)
     stands = [(number, now.square_of(now.places[number])) for number in range(now.first_impression, step + 1)]
@@ -82,17 +57,7 @@ def sightings(record: Record, step: int, squares: Iterable[Square]) -> list[Sigh
 
 
 def most_telling(found: Sequence[Sighting], occupied: bool, count: int) -> list[Sighting]:
-    """Return the sightings that say most clearly that their squares are occupied, or that they are free.
-
-    Small cells come first, then clear levels, then new impressions; sightings that say the contrary are left out, and
-    one cell is named once.
-
-    Parameters
-    ----------
-    found : the sightings.
-    occupied : whether the squares are believed to be occupied.
-    count : the greatest number of sightings that are returned.
-    """
+    """Return the sightings that say most clearly that their squares are occupied, or that they are free."""
     fitting = [one for one in found if (one.level > 0) == occupied]
     order = sorted(fitting, key=lambda s: (s.side, -s.level if occupied else s.level, -s.impression, s.cell))
     first: dict[tuple[int, int], Sighting] = {}

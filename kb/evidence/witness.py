@@ -25,16 +25,7 @@ OUTLINE_ROUNDING = 0.02  # squares: an outline in facts, in a turned frame, may 
 
 
 def seen_reason(record: Record, step: int, squares: Sequence[Square], occupied: bool, what: str) -> Reason:
-    """Return the reason why some squares are believed to be occupied, or to be free: the cells that show them.
-
-    Parameters
-    ----------
-    record : the record of the run.
-    step : the step whose beliefs count.
-    squares : the squares (column, row), map frame; of many, some at equal distances are looked up.
-    occupied : whether they are believed to be occupied.
-    what : what they are, in words, such as `the squares of o1`.
-    """
+    """Return the reason why some squares are believed to be occupied, or to be free: the cells that show them."""
     chosen = _some(squares, SAMPLED_SQUARES)
     found = sightings(record, step, chosen)
     telling = most_telling(found, occupied, SHOWN_CELLS)
@@ -62,15 +53,8 @@ def _some(squares: Sequence[Square], most: int) -> list[Square]:
 
 
 def felt_reason(record: Record, step: int, squares: Iterable[Square], colour: str, what: str) -> Reason | None:
-    """Return the reason why a colour is believed of some squares: the newest touch there; None when none is recorded.
-
-    Parameters
-    ----------
-    record, step : the record, and the step whose beliefs count.
-    squares : where the thing is now, (column, row), map frame.
-    colour : the colour.
-    what : what was felt, in words.
-    """
+    """Return the reason why a colour is believed of some squares: the newest touch there."""
+    # None when none is recorded.
     now, wanted = record.steps[step], set(squares)
     anywhere = None
     for number in range(step, now.first_impression - 1, -1):
@@ -110,14 +94,7 @@ def command_reason(step: RecordedStep) -> Reason:
 
 
 def line_squares(step: RecordedStep, start: XY, end: XY, aside: float) -> list[Square]:
-    """Return the squares along a line, map frame, in order, without repeats.
-
-    Parameters
-    ----------
-    step : the step, whose frame counts.
-    start, end : points (east, north) in squares, robot frame.
-    aside : how far to the left of the line the squares lie, in squares; negative for the right.
-    """
+    """Return the squares along a line, map frame, in order, without repeats."""
     (x0, y0), (x1, y1) = (step.frame.place_from_utak(*point) for point in (start, end))
     length = math.hypot(x1 - x0, y1 - y0)
     if length == 0:
@@ -130,10 +107,7 @@ def line_squares(step: RecordedStep, start: XY, end: XY, aside: float) -> list[S
 
 
 def node_squares(step: RecordedStep, node: str) -> list[Square]:
-    """Return the squares that a node covers by its outline, (column, row), map frame; [] when none is recorded.
-
-    step : the step whose facts count. node : its name, such as o1.
-    """
+    """Return the squares that a node covers by its outline, (column, row), map frame; [] when none is recorded."""
     return list(_node_squares(step.facts, step.frame.angle, step.frame.origin, node))
 
 

@@ -28,24 +28,7 @@ OBJECT_TEXT = RuleText("queries", 1, 1, OBJECT_RULE, "rule", "{N} is believed to
 
 
 def explain_query_atom(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Proof:
-    """Return why an atom certainly holds in queries.
-
-    Parameters
-    ----------
-    facts : the world model, atoms as text with or without full stops, such as `kind(o1,object,95).`.
-    atom : a believed fact, `object(N)`, or an atom that users' rules derive; likewise.
-    rule_files : the paths of files with users' rules.
-
-    Returns
-    -------
-    The proof: rule instances with their sentences; its leaves are believed facts, and what is not possible by what is
-    believed. No atom in it rests on itself.
-
-    Raises
-    ------
-    ExplanationError : the atom does not certainly hold, or the rules took too much time.
-    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
-    """
+    """Return why an atom certainly holds in queries."""
     (wanted,) = canonical([atom])
     files = tuple(map(str, rule_files))
     trees, holding = _trees(canonical(facts), files, texts_of(files))
@@ -55,10 +38,7 @@ def explain_query_atom(facts: Sequence[str], atom: str, rule_files: Sequence[str
 
 
 def certain_atoms(facts: Sequence[str], rule_files: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return all atoms that certainly hold in queries, believed facts included, sorted.
-
-    Parameters and errors as of `explain_query_atom`.
-    """
+    """Return all atoms that certainly hold in queries, believed facts included, sorted."""
     files = tuple(map(str, rule_files))
     return tuple(sorted(_trees(canonical(facts), files, texts_of(files))[1]))
 
@@ -66,19 +46,7 @@ def certain_atoms(facts: Sequence[str], rule_files: Sequence[str] = ()) -> tuple
 def query_response(
     facts: Sequence[str], rule_files: tuple[str, ...], request: JsonValues
 ) -> tuple[JsonValues, tuple[Statement, ...]]:
-    """Return what the process for queries answers to a request, and the users' rules that took part.
-
-    Parameters
-    ----------
-    facts : the world model, atoms as text without full stops.
-    rule_files : the paths of files with users' rules.
-    request : what is asked besides facts and rules, as kb.reasoning.query_worker reads it.
-
-    Raises
-    ------
-    ExplanationError : the answer took too much time, or there is none.
-    BadInputError, CannotOpenError : users' rules have errors or cannot be read.
-    """
+    """Return what the process for queries answers to a request, and the users' rules that took part."""
     rules = read_rules(rule_files).query_rules if rule_files else ()
     whole = {**request, "facts": request_entries(facts), "rules": [one.written for one in rules]}
     found = rules_worker().exchange(whole, MAX_RULE_SECONDS)
@@ -95,10 +63,7 @@ def query_response(
 def _trees(
     facts: tuple[str, ...], rule_files: tuple[str, ...], _texts: tuple[str, ...]
 ) -> tuple[ProofTrees, frozenset[str]]:
-    """Return the proofs of all atoms that certainly hold, and these atoms; the last ones are kept.
-
-    _texts : the texts of the files; when one changes, nothing that was kept counts.
-    """
+    """Return the proofs of all atoms that certainly hold, and these atoms; the last ones are kept."""
     found, rules = query_response(facts, rule_files, {"justify": True})
     sentences, words = words_of_users(rules)
     units = [_unit(entry, rules, sentences) for entry in found["units"]]

@@ -35,46 +35,17 @@ class ExplanationError(Exception):
 
 
 class RuleUnit(NamedTuple):
-    """A rule with one alternative of each of its pools.
+    """A rule with one alternative of each of its pools."""
 
-    Attributes
-    ----------
-    rule : the rule.
-    variables : the names that the rule gives to its global variables.
-    names : the same with those of hidden variables; instances have a value for each.
-    literals : what is known of each literal of its body (kb.tracing.instrument.literal_info).
-    conditions : the same of the conditions of each atom of its head.
-    """
-
-    rule: RuleText
-    variables: tuple[str, ...]
-    names: tuple[str, ...]
-    literals: tuple[JsonValues, ...]
-    conditions: tuple[tuple[JsonValues, ...], ...]
+    rule: RuleText  # the rule
+    variables: tuple[str, ...]  # the names that the rule gives to its global variables
+    names: tuple[str, ...]  # the same with those of hidden variables; instances have a value for each
+    literals: tuple[JsonValues, ...]  # what is known of each literal of its body (kb.tracing.instrument.literal_info).
+    conditions: tuple[tuple[JsonValues, ...], ...]  # the same of the conditions of each atom of its head
 
 
 class DecisionProgram:
-    """An encoding, with the users' rules that reach it.
-
-    Parameters
-    ----------
-    encoding : the name of the encoding without `.lp`.
-    rule_files : the paths of files with users' rules.
-    seconds : the limit of wall-clock time for each request where users' rules take part, and for UNBOUNDED_TASKS.
-
-    Attributes
-    ----------
-    encoding : its name.
-    units : the rules of the program, as `RuleUnit`s.
-    words : how predicates read, by (name, number of arguments).
-    shown : the predicates of its answers.
-    declared : the predicates of its input facts.
-
-    Raises
-    ------
-    ExplanationError : there is no such encoding.
-    CannotOpenError, BadInputError : a file with users' rules cannot be read or has errors.
-    """
+    """An encoding, with the users' rules that reach it."""
 
     def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS) -> None:
         self.encoding, self._seconds = encoding, seconds
@@ -110,10 +81,7 @@ class DecisionProgram:
         return found
 
     def instance(self, unit: RuleUnit, values: Sequence[str]) -> RuleInstance:
-        """Return a rule with values for its named variables.
-
-        values : one for each of the unit's `names`, or for each of its `variables` alone.
-        """
+        """Return a rule with values for its named variables."""
         names = unit.variables if len(values) == len(unit.variables) else unit.names
         given = dict(zip(names, values, strict=True))
         shown = tuple((name, given[name]) for name in unit.variables)
@@ -121,10 +89,8 @@ class DecisionProgram:
 
 
 def decision_program(encoding: str, rule_files: tuple[str, ...] = ()) -> DecisionProgram:
-    """Return an encoding with the users' rules that reach it; the same object while no file changes.
-
-    Raises what `DecisionProgram` does.
-    """
+    """Return an encoding with the users' rules that reach it; the same object while no file changes."""
+    # Raises what `DecisionProgram` does.
     return _kept_program(encoding, rule_files, texts_of(rule_files))
 
 
@@ -140,11 +106,9 @@ def texts_of(rule_files: Sequence[str]) -> tuple[str, ...]:
 
 
 def canonical(atoms: Sequence[str]) -> tuple[str, ...]:
-    """Return atoms as clingo writes them, without full stops, in their order.
-
-    Raises BadInputError for a text that is no fact: text of an episode never reaches clingo unread. Raises
-    ExplanationError for a name that explanations use themselves.
-    """
+    """Return atoms as clingo writes them, without full stops, in their order."""
+    # Raises BadInputError for a text that is no fact: text of an episode never reaches clingo unread. Raises
+    # ExplanationError for a name that explanations use themselves.
     text = "\n".join(atom if atom.rstrip().endswith(".") else f"{atom}." for atom in atoms)
     found = tuple(str(fact) for fact in facts_from_text(text))
     _refuse_helping_names(found)
@@ -189,11 +153,7 @@ def _parts_of(encoding: Path) -> list[ProgramPart]:
 def _rules_with_words(
     statements: Sequence[JsonValues], users: Sequence[Statement], own: Sequence[ProgramPart]
 ) -> tuple[list[RuleText], Mapping[tuple[str, int], PredicateWords]]:
-    """Return the rules of a program with their sentences, and how predicates read.
-
-    statements : the rules as kb.tracing found them, those of users first. users : the users' rules. own : the files of
-        the encoding.
-    """
+    """Return the rules of a program with their sentences, and how predicates read."""
     ours = statements[len(users) :]  # and, for queries, QUERY_PARTS
     found: dict[str, RuleWords] = {}
     for part in own:

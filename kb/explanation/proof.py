@@ -11,21 +11,7 @@ from kb.explanation.values import Proof, ProofNode, RivalChoice
 
 
 class TracedDecision:
-    """A decision with the proofs of its atoms.
-
-    Parameters
-    ----------
-    program : the encoding, with users' rules.
-    facts : its input facts, as clingo writes them.
-    answer : the shown atoms of its answer, likewise.
-    assumed : those of the facts that are not given really.
-
-    Attributes
-    ----------
-    program, facts, answer : as given.
-    atoms : all atoms that hold, shown or not.
-    supports : the rule instances that derive or may choose each atom.
-    """
+    """A decision with the proofs of its atoms."""
 
     def __init__(
         self, program: DecisionProgram, facts: Sequence[str], answer: Sequence[str], assumed: Sequence[str] = ()
@@ -65,10 +51,7 @@ class TracedDecision:
 def traced_decision(
     encoding: str, facts: tuple[str, ...], answer: tuple[str, ...], rule_files: tuple[str, ...] = ()
 ) -> TracedDecision:
-    """Return a decision with the rule instance that explains each of its atoms; the last ones are kept.
-
-    Parameters, errors as of `explain_decision`; facts and atoms as clingo writes them.
-    """
+    """Return a decision with the rule instance that explains each of its atoms; the last ones are kept."""
     return _kept_decision(decision_program(encoding, rule_files), facts, answer)
 
 
@@ -81,26 +64,7 @@ def _kept_decision(program: DecisionProgram, facts: tuple[str, ...], answer: tup
 def explain_decision(
     encoding: str, facts: Sequence[str], answer: Sequence[str] | None, atom: str, rule_files: Sequence[str] = ()
 ) -> Proof:
-    """Return why an atom holds in an answer of an encoding.
-
-    Parameters
-    ----------
-    encoding : the name of the encoding without `.lp`, such as "interpretation".
-    facts : its input facts, atoms as text with or without full stops.
-    answer : the shown atoms of its answer, likewise; None where it had no answer.
-    atom : the atom, likewise; it may be one that the encoding does not show.
-    rule_files : the paths of files with users' rules that took part.
-
-    Returns
-    -------
-    The proof: a tree whose leaves are input facts, what is not known, and what holds whatever is given. No atom in it
-    rests on itself. A chosen atom carries the other ways to choose, with their costs.
-
-    Raises
-    ------
-    ExplanationError : there is no such encoding, the answer is none of its answers, or the atom does not hold in it.
-    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
-    """
+    """Return why an atom holds in an answer of an encoding."""
     (wanted,) = canonical([atom])
     if answer is None:
         raise ExplanationError(f"{encoding}.lp had no answer, so {wanted} does not hold")

@@ -15,24 +15,7 @@ NUMBERED_LETTERS = "odrjl"  # of objects, doors, rooms, junctions and links, whi
 
 
 def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Absence:
-    """Return why an atom does not certainly hold in queries.
-
-    Parameters
-    ----------
-    facts : the world model, atoms as text with or without full stops, such as `kind(o1,object,95).`.
-    atom : an atom of a predicate that users' rules define; likewise.
-    rule_files : the paths of files with users' rules.
-
-    Returns
-    -------
-    The least change of the believed facts after which queries answer yes, with the proof of the atom then. A change
-    that makes the atom possible and not certain does not count: then none is `found`, and the sentence says so.
-
-    Raises
-    ------
-    ExplanationError : the atom certainly holds, or the rules took too much time.
-    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
-    """
+    """Return why an atom does not certainly hold in queries."""
     (wanted,) = canonical([atom])
     files, given = tuple(map(str, rule_files)), canonical(facts)
     answer = _answer(given, wanted, files)
@@ -62,10 +45,7 @@ def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[
 
 
 def _possible_atoms(given: Sequence[str]) -> list[str]:
-    """Return atoms of all believed predicates with names that nothing has yet, and with the classes of the vocabulary.
-
-    Each value that an argument may have stands in one of them. Predicates that take any name are left out.
-    """
+    """Return atoms of all believed predicates with unused names, and with the classes of the vocabulary."""
     told = " ".join(given)
     numbered = [next(f"{letter}{n}" for n in count(1) if f"{letter}{n}" not in told) for letter in NUMBERED_LETTERS]
     nowhere, words = SourceSpan(1, 1, 1), [*numbered, *SHAPE_CLASSES, *CORNER_NAMES, "object"]

@@ -14,20 +14,7 @@ MAX_PRICES_NAMED = 3  # prices that the sentence of a rival names for each side;
 def rivals_of(
     program: DecisionProgram, facts: Sequence[str], answer: Sequence[str], heads: Sequence[str], with_none: bool = True
 ) -> tuple[RivalChoice, ...]:
-    """Return how each other way to choose compares with an answer.
-
-    Parameters
-    ----------
-    program : the encoding, with users' rules.
-    facts, answer : its input facts and the shown atoms of its answer.
-    heads : the atoms among which a rule chooses.
-    with_none : whether to choose none of them counts as another way.
-
-    Returns
-    -------
-    One for each atom of `heads` that the answer does not hold, and one for choosing none of them where an answer allows
-    that; those that come nearest to the answer first, forbidden ones last.
-    """
+    """Return how each other way to choose compares with an answer."""
     request = {"task": "weigh", "facts": list(facts), "answer": list(answer), "heads": list(heads), "none": with_none}
     found = program.ask(request)
     chosen = found["chosen"]

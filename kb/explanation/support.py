@@ -11,49 +11,30 @@ LiteralValue = str | list[str]  # an atom, or the sides of a comparison or the b
 
 @dataclass(frozen=True)
 class CountedElement:
-    """An element of an aggregate or of a conditional literal whose condition holds.
+    """An element of an aggregate or of a conditional literal whose condition holds."""
 
-    Attributes
-    ----------
-    element : the index of the element in its literal.
-    terms : its tuple; for a conditional literal its literal.
-    condition : the literals of its condition.
-    """
-
-    element: int
-    terms: tuple[LiteralValue, ...]
-    condition: tuple[LiteralValue, ...]
+    element: int  # the index of the element in its literal
+    terms: tuple[LiteralValue, ...]  # its tuple; for a conditional literal its literal
+    condition: tuple[LiteralValue, ...]  # the literals of its condition
 
 
 @dataclass(frozen=True)
 class Support:
-    """A rule instance that derives or chooses an atom.
+    """A rule instance that derives or chooses an atom."""
 
-    Attributes
-    ----------
-    number : the index of its unit.
-    unit : the rule with one alternative of each pool.
-    values : a value for each of the unit's names.
-    literals : the literals of its body.
-    elements : of each literal the elements that count; () for literals other than aggregates and conditional ones.
-    head_element : the index of the atom in the rule's head.
-    condition : the literals of the condition of that atom.
-    """
-
-    number: int
-    unit: RuleUnit
-    values: tuple[str, ...]
-    literals: tuple[LiteralValue, ...]
+    number: int  # the index of its unit
+    unit: RuleUnit  # the rule with one alternative of each pool
+    values: tuple[str, ...]  # a value for each of the unit's names
+    literals: tuple[LiteralValue, ...]  # the literals of its body
+    # Of each literal the elements that count; () for literals other than aggregates and conditional ones
     elements: tuple[tuple[CountedElement, ...], ...]
-    head_element: int
-    condition: tuple[LiteralValue, ...]
+    head_element: int  # the index of the atom in the rule's head
+    condition: tuple[LiteralValue, ...]  # the literals of the condition of that atom
 
 
 def supports_of(trace: JsonValues, units: Sequence[RuleUnit]) -> dict[str, list[Support]]:
-    """Return the rule instances that derive or may choose each atom, by atom; a choice lists also what is not chosen.
-
-    trace : the response of kb.tracing to the task "trace". units : the units of the program.
-    """
+    """Return the rule instances that derive or may choose each atom, by atom."""
+    # A choice lists also what is not chosen.
     bodies = {(unit, tuple(values)): tuple(literals) for unit, values, literals in trace["on"]}
     counted: dict[tuple[int, tuple[str, ...], int], list[CountedElement]] = {}
     for unit, literal, element, values, terms, condition in trace["elements"]:
@@ -71,14 +52,7 @@ def supports_of(trace: JsonValues, units: Sequence[RuleUnit]) -> dict[str, list[
 def founded_supports(
     supports: Mapping[str, Sequence[Support]], given: Iterable[str], holding: Iterable[str]
 ) -> tuple[dict[str, Support], dict[str, int]]:
-    """Return for each atom of an answer the rule instance that explains it, and its height in the proof.
-
-    The height of a given fact is 0, that of any other atom greater than those of the atoms on which it rests. Of
-    several instances the one of least height is taken, then the one with fewer literals, then the one that stands
-    first.
-
-    supports : the instances for each atom. given : the input facts. holding : all atoms of the answer.
-    """
+    """Return for each atom of an answer the rule instance that explains it, and its height in the proof."""
     heights = dict.fromkeys(given, 0)
     chosen: dict[str, Support] = {}
     wanted = set(holding)
@@ -99,10 +73,7 @@ def founded_supports(
 def _raise_levels(
     supports: Mapping[str, Sequence[Support]], wanted: set[str], heights: dict[str, int], chosen: dict[str, Support]
 ) -> None:
-    """Give heights and rule instances to all atoms that rest on given facts, level after level.
-
-    wanted : the atoms that hold. heights, chosen : changed.
-    """
+    """Give heights and rule instances to all atoms that rest on given facts, level after level."""
     waiting: dict[str, list[tuple[str, int]]] = {}  # by atom the instances that need it: (their atom, their index)
     left: dict[tuple[str, int], int] = {}  # how many needed atoms of an instance have no height yet
     size: dict[tuple[str, int], int] = {}
@@ -166,10 +137,7 @@ def _all_needed(support: Support) -> Iterator[str]:
 
 
 def _needed_at_least(support: Support, heights: Mapping[str, int]) -> Iterable[str] | None:
-    """Return the atoms that suffice for an instance, given those that have heights; None when they do not suffice.
-
-    An aggregate must hold by the elements all of whose atoms have heights; a conditional literal must hold for these.
-    """
+    """Return the atoms that suffice for an instance, given those that have heights; None when they do not suffice."""
     found = list(positive_atoms(support.literals, support.unit.literals))
     if support.condition:
         found += positive_atoms(support.condition, support.unit.conditions[support.head_element])
@@ -196,11 +164,8 @@ def founded_elements(
 
 
 def aggregate_value(info: JsonValues, elements: Iterable[CountedElement]) -> str:
-    """Return the value of an aggregate over its elements as text; `#inf` and `#sup` for the greatest and least of none.
-
-    Elements with equal tuples count once. Members that are no numbers do not count in a sum; among the greatest and the
-    least, numbers are compared with numbers and else texts with texts, a name being greater than any number.
-    """
+    """Return the value of an aggregate over its elements as text."""
+    # `#inf` and `#sup` for the greatest and least of none.
     tuples = dict.fromkeys(_flat(one.terms) for one in elements)
     function = info["function"]
     if function == "#count":

@@ -29,18 +29,7 @@ from kb.tracing.syntax import JsonValues
 
 
 class ProofTrees:
-    """The proofs of the atoms that hold.
-
-    Parameters
-    ----------
-    supports : the rule instances that derive or may choose each atom.
-    given : the input facts.
-    holding : all atoms that hold.
-    words : how predicates read.
-    assumed : those of the facts that are not given really.
-    instance : makes a rule with values of a rule instance.
-    rivals : returns the other ways to choose for a rule instance that chose an atom.
-    """
+    """The proofs of the atoms that hold."""
 
     def __init__(
         self,
@@ -118,10 +107,8 @@ class ProofTrees:
         elements: Sequence[CountedElement],
         values: Mapping[str, str] | None,
     ) -> Iterator[ProofNode]:
-        """Yield the node of one literal; nothing for a constant truth.
-
-        values : the values of the variables of its rule; None where local variables may stand in it.
-        """
+        """Yield the node of one literal; nothing for a constant truth."""
+        # None where local variables may stand in it.
         kind, words = info["kind"], self._words
         if kind == "atom" and isinstance(value, str):
             yield self._nodes[value]

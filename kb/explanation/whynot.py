@@ -19,28 +19,7 @@ def explain_absence(
     atom: str,
     rule_files: Sequence[str] = (),
 ) -> Absence:
-    """Return why an atom does not hold in an answer of an encoding.
-
-    Parameters
-    ----------
-    encoding : the name of the encoding without `.lp`.
-    facts : its input facts, atoms as text with or without full stops.
-    answer : the shown atoms of its answer, likewise; None where it had no answer.
-    atom : the atom that does not hold.
-    rule_files : the paths of files with users' rules that took part.
-
-    Returns
-    -------
-    The least change of the input facts with which the atom holds: facts that would have to be given (over the constants
-    that are known, and numbers that the rules need), and facts that would have to be absent. No member of it can be
-    left out. `partial` marks a change that may not be the least one. For an atom that could have been chosen it holds
-    also how that choice compares with the answer. After the change the atom is part of a best answer.
-
-    Raises
-    ------
-    ExplanationError : there is no such encoding, the answer is none of its answers, or the atom holds in it.
-    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
-    """
+    """Return why an atom does not hold in an answer of an encoding."""
     (wanted,) = canonical([atom])
     files = tuple(map(str, rule_files))
     program, given = decision_program(encoding, files), canonical(facts)

@@ -53,11 +53,8 @@ def atom_pattern(atom: str) -> str:
 
 
 def comparison_claim(info: JsonValues, sides: Sequence[str], values: Mapping[str, str] | None) -> str:
-    """Return a comparison with values in the place of its variables.
-
-    sides : its sides computed. values : the values of all its variables; None when some are not known, then the
-        computed sides stand in the claim.
-    """
+    """Return a comparison with values in the place of its variables."""
+    # None when some are not known, then the computed sides stand in the claim.
     texts = list(sides) if values is None else [_unwrapped(substituted(text, values)) for text in info["sides"]]
     parts = [texts[0]]
     for sign, text in zip(info["signs"], texts[1:], strict=True):
@@ -124,10 +121,7 @@ def member_text(terms: Iterable[LiteralValue]) -> str:
 
 
 def substituted(text: str, values: Mapping[str, str]) -> str:
-    """Return a text of the program with values in the place of variables; a variable without a value stays.
-
-    A negative number has brackets behind a sign, and as the base of a power.
-    """
+    """Return a text of the program with values in the place of variables; a variable without a value stays."""
 
     def value(match: re.Match[str]) -> str:
         """Return what stands in the place of a variable or a string."""

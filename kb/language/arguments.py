@@ -11,32 +11,19 @@ DECIMAL_FORM = re.compile(r"[-+]?(?:[0-9]{1,19}(?:\.[0-9]{0,19})?|\.[0-9]{1,19})
 
 
 class Complaint(NamedTuple):
-    """The reason why a term does not fit its argument.
+    """The reason why a term does not fit its argument."""
 
-    Attributes
-    ----------
-    span : the place of the term in its source: line and columns from 1.
-    what : the error message, without its place.
-    hint : a remedy, or '' for none.
-    """
-
-    span: SourceSpan
-    what: str
-    hint: str = ""
+    span: SourceSpan  # the place of the term in its source: line and columns from 1
+    what: str  # the error message, without its place
+    hint: str = ""  # a remedy, or '' for none
 
 
 class ArgumentType(NamedTuple):
-    """The type of one argument of a predicate.
+    """The type of one argument of a predicate."""
 
-    Attributes
-    ----------
-    name : the name of the argument in messages and in the vocabulary.
-    check : returns the complaint about a term, or None when the term fits.
-    limits : (least, greatest) integer that fits; None for an argument that is no integer.
-    """
-
-    name: str
-    check: Callable[[Term], Complaint | None]
+    name: str  # the name of the argument in messages and in the vocabulary
+    check: Callable[[Term], Complaint | None]  # returns the complaint about a term, or None when the term fits
+    # (least, greatest) integer that fits; None for an argument that is no integer
     limits: tuple[int, int] | None = None
 
 
@@ -47,12 +34,8 @@ def abbreviated(term: Term) -> str:
 
 
 def integer_argument(name: str, low: int, high: int) -> ArgumentType:
-    """Return the type of integers from `low` to `high`, both included.
-
-    It holds the name, a check that returns the complaint about a term (None when the term fits), and the limits.
-
-    name : what the argument is called in messages, with its article, such as `a count`.
-    """
+    """Return the type of integers from `low` to `high`, both included."""
+    # It holds the name, a check that returns the complaint about a term (None when the term fits), and the limits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is an integer in the range."""
@@ -66,12 +49,8 @@ def integer_argument(name: str, low: int, high: int) -> ArgumentType:
 
 
 def decimal_argument(name: str, low: float, high: float) -> ArgumentType:
-    """Return the type of numbers from `low` to `high`, both included: integers, or quoted decimals such as "0.5".
-
-    It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
-
-    name : what the argument is called in messages, with its article, such as `a distance`.
-    """
+    """Return the type of numbers from `low` to `high`, both included: integers, or quoted decimals such as "0.5"."""
+    # It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is a number in the range."""
@@ -93,12 +72,8 @@ def decimal_value(term: Term) -> float:
 
 
 def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
-    """Return the type of the names in `known`: no other name fits.
-
-    It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
-
-    name : what the argument is called in messages, without an article, such as `shape`.
-    """
+    """Return the type of the names in `known`: no other name fits."""
+    # It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
     words = tuple(known)
 
     def check(term: Term) -> Complaint | None:
@@ -127,14 +102,8 @@ def _check_colour(term: Term) -> Complaint | None:
 
 
 def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
-    """Return the type of the names that match a regular expression as a whole, such as o1 for `o[0-9]+`.
-
-    It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
-
-    name : the name of the argument in messages, without an article.
-    pattern : the expression.
-    such_as : an example of a valid name, for the hint.
-    """
+    """Return the type of the names that match a regular expression as a whole, such as o1 for `o[0-9]+`."""
+    # It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
     form = re.compile(pattern)
 
     def check(term: Term) -> Complaint | None:
@@ -147,14 +116,8 @@ def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
 
 
 def wkt_argument(name: str, *kinds: str) -> ArgumentType:
-    """Return the type of quoted shapes in well-known text, coordinates in squares.
-
-    It holds the name and a check that returns the complaint about a term, at the character where its text goes wrong;
-    None when the term fits.
-
-    name : what the argument is called in messages, with its article.
-    kinds : the kinds of shapes that fit, at least one of POINT, LINESTRING, POLYGON and MULTIPOLYGON.
-    """
+    """Return the type of quoted shapes in well-known text, coordinates in squares."""
+    # None when the term fits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is a quoted shape of an accepted kind."""

@@ -11,44 +11,24 @@ MAX_SOURCE_LINE_WIDTH = 120  # characters of a source line that a message shows;
 
 
 class SourceSpan(NamedTuple):
-    """A range of columns on one line of a source; lines and columns count from 1, in characters.
+    """A range of columns on one line of a source; lines and columns count from 1, in characters."""
 
-    Attributes
-    ----------
-    line : the line.
-    start : the first column, from 1.
-    end : the last column, which belongs to the range.
-    """
-
-    line: int
-    start: int
-    end: int
+    line: int  # the line
+    start: int  # the first column, from 1
+    end: int  # the last column, which belongs to the range
 
 
 class Problem(NamedTuple):
-    """One error in a user's file.
+    """One error in a user's file."""
 
-    Attributes
-    ----------
-    file : the file's name as the user gave it.
-    span : the place of the error.
-    what : the error message, without its place.
-    source : the text of the whole line at `span`; '' when it is not shown.
-    hint : a remedy, or '' for none.
-    """
-
-    file: str
-    span: SourceSpan
-    what: str
-    source: str = ""
-    hint: str = ""
+    file: str  # the file's name as the user gave it
+    span: SourceSpan  # the place of the error
+    what: str  # the error message, without its place
+    source: str = ""  # the text of the whole line at `span`; '' when it is not shown
+    hint: str = ""  # a remedy, or '' for none
 
     def __str__(self) -> str:
-        """Return `file:line:col-col: error: what`, then the source line, a line of carets under the place, the hint.
-
-        Lines are joined by line ends, without one at the end; source line, carets and hint are left out when they are
-        ''.
-        """
+        """Return `file:line:col-col: error: what`, then the source line, a line of carets under the place, the hint."""
         line, start, end = self.span
         text = [f"{_on_one_line(self.file)}:{line}:{start}-{end}: error: {self.what}"]
         if self.source:
@@ -61,12 +41,7 @@ class Problem(NamedTuple):
 
 
 class BadInputError(Exception):
-    """A user's file has errors; its text is that of the problems (see `format_problems`).
-
-    Attributes
-    ----------
-    problems : all problems found, a tuple in the order of the files.
-    """
+    """A user's file has errors; its text is that of the problems (see `format_problems`)."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(problems)
@@ -74,13 +49,7 @@ class BadInputError(Exception):
 
 
 class CannotOpenError(Exception):
-    """A user's file cannot be opened or read.
-
-    Attributes
-    ----------
-    path : the file's name as the user gave it.
-    why : the reason, in the words of the system.
-    """
+    """A user's file cannot be opened or read."""
 
     def __init__(self, path: str, why: str) -> None:
         self.path, self.why = path, why
@@ -88,10 +57,7 @@ class CannotOpenError(Exception):
 
 
 def format_problems(problems: Iterable[Problem]) -> str:
-    """Return the first `MAX_PROBLEMS_SHOWN` problems as text, and the last line `... and more` when there are more.
-
-    Without a line end at the end; '' for no problems.
-    """
+    """Return the first `MAX_PROBLEMS_SHOWN` problems as text, and the last line `... and more` when there are more."""
     every = list(problems)
     text = [str(problem) for problem in every[:MAX_PROBLEMS_SHOWN]]
     if len(every) > MAX_PROBLEMS_SHOWN:
@@ -100,17 +66,7 @@ def format_problems(problems: Iterable[Problem]) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the hint "did you mean X?" for the word X of `known` most similar to `word`.
-
-    Parameters
-    ----------
-    word : the misspelt word; only its first 80 characters are compared.
-    known : the valid words.
-
-    Returns
-    -------
-    The hint, such as "did you mean square?"; '' when no valid word is similar (a difflib ratio below 0.6).
-    """
+    """Return the hint "did you mean X?" for the word X of `known` most similar to `word`."""
     import difflib  # only when something is misspelt
 
     near = difflib.get_close_matches(word[:80], sorted(known), n=1, cutoff=0.6)
@@ -123,11 +79,7 @@ def _on_one_line(name: str) -> str:
 
 
 def _window(source: str, start: int) -> tuple[str, int]:
-    """Return the part of a long line around column `start` (from 1), and how many characters were cut off on its left.
-
-    The part has at most MAX_SOURCE_LINE_WIDTH characters; a tab becomes a blank, any other character beyond printable
-    ASCII `?`.
-    """
+    """Return the part of a long line around column `start` (from 1), and how many characters were cut on its left."""
     clean = "".join(c if " " <= c <= "~" else " " if c == "\t" else "?" for c in source)
     left = 0 if len(clean) <= MAX_SOURCE_LINE_WIDTH else max(0, start - 1 - MAX_SOURCE_LINE_WIDTH // 3)
     return clean[left : left + MAX_SOURCE_LINE_WIDTH], left

@@ -19,20 +19,7 @@ MAX_DIGITS_CONVERTED = 40  # a literal with more digits is beyond 32 bits in eve
 
 
 def integers_beyond_32_bits(source: Source, tokens: Iterable[Token] | None = None) -> Iterator[Problem]:
-    """Yield a problem for each integer of a program's text that does not fit in 32 bits.
-
-    Integers in strings and comments are ignored. 2147483648 is accepted only after a minus sign that negates it.
-
-    Parameters
-    ----------
-    source : the text of a logic program or a query.
-    tokens : its tokens, where the caller has them; None to read them from the text.
-
-    Yields
-    ------
-    One problem an integer, in the order of the text: the file, the place of the integer, the message, the source line
-    and a hint.
-    """
+    """Yield a problem for each integer of a program's text that does not fit in 32 bits."""
     ahead, before = "(", "("
     for token in tokenize(source, []) if tokens is None else tokens:
         if token.kind == "number":

@@ -37,10 +37,7 @@ _msvcrt: Any = None if _fcntl else _optional("msvcrt")
 
 
 def missing_features() -> list[str]:
-    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing.
-
-    The sentences have no full stop.
-    """
+    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing."""
     missing = []
     if _resource is None:
         missing.append("the memory of a question is not limited on this system: only its time is")
@@ -51,13 +48,7 @@ def missing_features() -> list[str]:
 
 @contextmanager
 def alarms(seconds: float, interval: float, ring: Callable[[], None]) -> Iterator[None]:
-    """Call a function, which raises, while a `with` block goes on; not outside of the main thread, nor on Windows.
-
-    Parameters
-    ----------
-    seconds : of wall-clock time until it is called first.
-    interval : between two calls, for one may fall where errors are ignored.
-    """
+    """Call a function, which raises, while a `with` block goes on; not outside of the main thread, nor on Windows."""
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
         yield
         return
@@ -82,18 +73,7 @@ def alarms(seconds: float, interval: float, ring: Callable[[], None]) -> Iterato
 
 
 def limit_resource(kind: str, most: int) -> bool:
-    """Limit what this process may use from now on.
-
-    Parameters
-    ----------
-    kind : the suffix of the RLIMIT constant: `AS` (bytes of memory), `NOFILE` (open files), `CORE` (bytes of a core
-        dump).
-    most : the limit, in the unit of that kind; it cannot be raised again.
-
-    Returns
-    -------
-    Whether the system supports and accepted the limit; when not, nothing has changed.
-    """
+    """Limit what this process may use from now on."""
     which = getattr(_resource, f"RLIMIT_{kind}", None)
     if which is None:
         return False
@@ -105,10 +85,7 @@ def limit_resource(kind: str, most: int) -> bool:
 
 
 def limit_processor_time(seconds: int) -> bool:
-    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so.
-
-    A later call replaces the limit. False, and no limit, where the system has none or refuses it.
-    """
+    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so."""
     if not hasattr(_resource, "RLIMIT_CPU"):
         return False
     used = sum(_resource.getrusage(_resource.RUSAGE_SELF)[:2])
@@ -121,10 +98,7 @@ def limit_processor_time(seconds: int) -> bool:
 
 
 def end_with_parent() -> bool:
-    """Let the system kill this process as soon as its parent process ends; return whether the system does so.
-
-    A parent that ended before this call is not noticed. `read_lines_from_parent` notices it: the input has ended.
-    """
+    """Let the system kill this process as soon as its parent process ends; return whether the system does so."""
     if not sys.platform.startswith("linux"):
         return False
     try:
@@ -136,11 +110,8 @@ def end_with_parent() -> bool:
 
 
 def read_lines_from_parent() -> Iterator[bytes]:
-    """Yield the lines of the standard input, without line ends; end this process at once when the input ends.
-
-    A thread watches the input, because the input ends with the parent process on every system. The process ends with
-    exit code 0, whatever it is doing then.
-    """
+    """Yield the lines of the standard input, without line ends; end this process at once when the input ends."""
+    # A thread watches the input, because the input ends with the parent process on every system.
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
     def watch() -> None:
@@ -160,16 +131,7 @@ def read_lines_from_parent() -> Iterator[bytes]:
 
 
 def lock_file(handle: int) -> bool:
-    """Lock an open file for this process alone, until the file is closed.
-
-    Parameters
-    ----------
-    handle : the file descriptor, as of os.open.
-
-    Returns
-    -------
-    False when another process holds the lock. True otherwise, also where the file system has no locks.
-    """
+    """Lock an open file for this process alone, until the file is closed."""
     try:
         if _fcntl is not None:
             _fcntl.flock(handle, _fcntl.LOCK_EX | _fcntl.LOCK_NB)

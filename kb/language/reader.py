@@ -29,41 +29,13 @@ ESCAPED_CHARACTERS = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}  # the valid escape
 
 
 def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:
-    """Read a fact file.
-
-    Parameters
-    ----------
-    path : the path of the file.
-
-    Returns
-    -------
-    The source (the file's name and its text), and the facts in the order of the file: each a name with its arguments,
-    and its place.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the text has syntax errors; carries all of them.
-    """
+    """Read a fact file."""
     source = read_source(path)
     return source, parse_facts(source)
 
 
 def facts_from_text(text: str, file: str = "input") -> tuple[Fact, ...]:
     """Return the facts that a text states.
-
-    Parameters
-    ----------
-    text : facts and comments.
-    file : the name of the text in messages.
-
-    Returns
-    -------
-    The facts in the order of the text, each a name with its arguments and its place (line and columns from 1).
-
-    Raises
-    ------
-    BadInputError : the text has syntax errors; carries all of them.
 
     Examples
     --------
@@ -74,21 +46,7 @@ def facts_from_text(text: str, file: str = "input") -> tuple[Fact, ...]:
 
 
 def parse_facts(source: Source) -> tuple[Fact, ...]:
-    """Return the facts of a source text, in order.
-
-    Parameters
-    ----------
-    source : the text of a fact file.
-
-    Returns
-    -------
-    The facts, each a name with its arguments (numbers, texts, names) and its place. Only the syntax is checked;
-    `kb.language.vocabulary.check_facts` checks predicates and arguments.
-
-    Raises
-    ------
-    BadInputError : the text has syntax errors; carries all of them.
-    """
+    """Return the facts of a source text, in order."""
     reader = _Reader(source)
     facts = reader.facts()
     if reader.problems:
@@ -101,15 +59,7 @@ class _RefusedError(Exception):
 
 
 class _Reader:
-    """A recursive-descent parser over the tokens of one text.
-
-    Attributes
-    ----------
-    source : the text.
-    problems : the problems found so far; it grows.
-    peek : the next token, which has not been taken yet.
-    ended : whether the full stop of the refused fact has been read already.
-    """
+    """A recursive-descent parser over the tokens of one text."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -119,11 +69,7 @@ class _Reader:
         self.ended = False  # whether the full stop of the refused fact has been read
 
     def facts(self) -> tuple[Fact, ...]:
-        """Return all valid facts in order; problems are collected in `self.problems`.
-
-        A fact is a name with its arguments, and its place; facts with errors are left out. It stops after
-        `MAX_PROBLEMS_PER_FILE` problems, and beyond `MAX_FACTS` facts, which is a problem itself.
-        """
+        """Return all valid facts in order; problems are collected in `self.problems`."""
         found = []
         while self.peek.kind != "end" and len(self.problems) < MAX_PROBLEMS_PER_FILE:
             try:
@@ -136,10 +82,7 @@ class _Reader:
         return tuple(found)
 
     def take(self) -> Token:
-        """Return the next token and move on to the one after it; the token `end` is returned again and again.
-
-        A token holds its kind (such as name, number or mark), its characters, and its place (line and columns from 1).
-        """
+        """Return the next token and move on to the one after it; the token `end` is returned again and again."""
         token = self.peek
         self.peek = next(self._coming, token)
         return token
@@ -157,19 +100,13 @@ class _Reader:
                 return
 
     def refuse(self, token: Token, what: str, hint: str = "") -> _RefusedError:
-        """Record a problem at a token, and return the exception that the caller raises.
-
-        what : the message. hint : a remedy, or '' for none. The exception carries nothing: the problem is in
-            `problems`.
-        """
+        """Record a problem at a token, and return the exception that the caller raises."""
         self.problems.append(self.source.problem(token.span, what, hint))
         return _RefusedError()
 
     def fact(self) -> Fact:
-        """Read one fact with its full stop, and return it: a name with its arguments and its place.
-
-        Raises _RefusedError, after recording a problem, where something else stands.
-        """
+        """Read one fact with its full stop, and return it: a name with its arguments and its place."""
+        # Raises _RefusedError, after recording a problem, where something else stands.
         token = self.peek
         if token.kind != "name":
             raise self.not_a_fact(token)
@@ -180,12 +117,8 @@ class _Reader:
         return fact
 
     def term(self, depth: int) -> Term:
-        """Read one term, and return it: a number, a text, or a name with its arguments.
-
-        depth : the number of terms around it.
-
-        Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
-        """
+        """Read one term, and return it: a number, a text, or a name with its arguments."""
+        # Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
         token = self.peek
         if depth > MAX_TERM_DEPTH:
             raise self.refuse(token, f"terms are nested more than {MAX_TERM_DEPTH} deep")
@@ -200,12 +133,8 @@ class _Reader:
         raise self.not_a_term(token)
 
     def symbol(self, depth: int) -> Symbol:
-        """Read a name with its arguments, if there are any, and return it.
-
-        The result holds the name, the arguments as terms, and its place, which ends at the name where the bracket is
-        closed on another line. Raises _RefusedError, after recording a problem, for a syntax error. depth : the number
-        of terms around it, 0 for a fact.
-        """
+        """Read a name with its arguments, if there are any, and return it."""
+        # Raises _RefusedError, after recording a problem, for a syntax error.
         name = self.take()
         if name.text in ASP_KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):
             what = f"{name.text} is a word of the language and cannot name anything"

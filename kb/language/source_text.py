@@ -21,34 +21,22 @@ UNUSUAL_SPACES = "\u00a0\u2002\u2003\u2009\u200b\u202f\u3000"  # blanks that loo
 
 @dataclass(frozen=True)
 class Source:
-    """The text of a user's file.
+    """The text of a user's file."""
 
-    Attributes
-    ----------
-    file : the file's name as the user gave it.
-    text : the whole text; printable ASCII, tabs and line ends when `source_from_bytes` accepted it.
-    hide_text : whether the file is a link that leads out of its folder. Then messages show none of its text, because
-        the author of the link may have no right to read the file.
-    """
-
-    file: str
+    file: str  # the file's name as the user gave it
+    # The whole text; printable ASCII, tabs and line ends when `source_from_bytes` accepted it
     text: str = field(repr=False)
+    # Whether the file is a link that leads out of its folder. Then messages show none of its text, because the author
+    # of the link may have no right to read the file.
     hide_text: bool = False
 
     @cached_property
     def lines(self) -> list[str]:
-        """The lines of the text, without line ends; line n of a span is at index n - 1.
-
-        An empty text has one line, ''.
-        """
+        """The lines of the text, without line ends; line n of a span is at index n - 1."""
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
     def problem(self, span: SourceSpan, what: str, hint: str = "") -> Problem:
-        """Return the problem `what` at `span`, with the file's name, the source line and the hint ('' for none).
-
-        It is returned, not raised. `span` is a line and its columns, from 1; beyond the last line no source line is
-        shown. When the text is hidden, the message is HIDDEN_TEXT_MESSAGE instead, and no source line is shown.
-        """
+        """Return the problem `what` at `span`, with the file's name, the source line and the hint ('' for none)."""
         if self.hide_text:
             return Problem(
                 self.file, span, HIDDEN_TEXT_MESSAGE, hint="check the file that it leads to, or copy it into the folder"
@@ -62,55 +50,19 @@ class Source:
 
 
 def read_source(path: Path | str) -> Source:
-    """Read a text file.
-
-    Parameters
-    ----------
-    path : the path of the file. A FIFO or a device is refused, not waited for.
-
-    Returns
-    -------
-    The whole text with the file's name; it is hidden in messages when the file is a link out of its folder.
-
-    Raises
-    ------
-    CannotOpenError : the file does not exist, is unreadable, or is no regular file.
-    BadInputError : the file has more than `MAX_FILE_BYTES` bytes, or other characters than printable ASCII, tabs, line
-        ends.
-    """
+    """Read a text file."""
     return source_from_bytes(str(path), read_bytes(str(path), MAX_FILE_BYTES), lies_outside(path))
 
 
 def lies_outside(path: Path | str, folder: Path | str | None = None) -> bool:
-    """Return whether a file lies outside of a folder when all links are followed; subfolders count as inside.
-
-    Parameters
-    ----------
-    path : the path of the file, which need not exist.
-    folder : the path of the folder; None for the folder in which the file is named.
-    """
+    """Return whether a file lies outside of a folder when all links are followed; subfolders count as inside."""
     named = os.path.abspath(path)  # noqa: PTH100 (a link in the folder's own name is not followed yet)
     home = os.path.realpath(folder if folder is not None else os.path.dirname(named))  # noqa: PTH120
     return not os.path.realpath(named).startswith(os.path.join(home, ""))  # noqa: PTH118
 
 
 def source_from_bytes(file: str, raw: bytes, hide_text: bool = False) -> Source:
-    """Return the text of a file's bytes, checked to be ASCII.
-
-    Parameters
-    ----------
-    file : the file's name in messages.
-    raw : the bytes.
-    hide_text : whether messages must not show the text.
-
-    Returns
-    -------
-    The text with the file's name.
-
-    Raises
-    ------
-    BadInputError : there are too many bytes, or characters that are not allowed; names each of them.
-    """
+    """Return the text of a file's bytes, checked to be ASCII."""
     if len(raw) > MAX_FILE_BYTES:
         raise BadInputError([Problem(file, SourceSpan(1, 1, 1), f"the file is larger than {MAX_FILE_BYTES} bytes")])
     for mark, name in UNSUPPORTED_ENCODINGS.items():
@@ -125,21 +77,7 @@ def source_from_bytes(file: str, raw: bytes, hide_text: bool = False) -> Source:
 
 
 def read_bytes(path: str, most: int) -> bytes:
-    """Return the bytes of a regular file.
-
-    Parameters
-    ----------
-    path : the path of the file. A FIFO or a device is refused, not waited for.
-    most : at most `most` + 1 bytes are read, so that a caller notices a file with more than `most` bytes.
-
-    Returns
-    -------
-    The bytes from the start of the file, all of them when they are at most `most`.
-
-    Raises
-    ------
-    CannotOpenError : the file does not exist, is unreadable, or is no regular file.
-    """
+    """Return the bytes of a regular file."""
     try:
         handle = os.open(path, READ_FLAGS)
     except (OSError, ValueError) as error:
@@ -160,12 +98,7 @@ def read_bytes(path: str, most: int) -> bytes:
 
 
 def _disallowed_characters(source: Source) -> list[Problem]:
-    """Return one problem for each run of equal characters on a line that are not allowed in users' text files.
-
-    A problem holds the file, the place, the message, the source line and a hint. In the order of the text,
-    MAX_PROBLEMS_PER_FILE at most; [] when all are allowed: printable ASCII, tabs and line
-    ends.
-    """
+    """Return one problem for each run of equal characters on a line that are not allowed in users' text files."""
     if source.text.isascii() and source.text.translate(_ALLOWED) == "":
         return []
     problems: list[Problem] = []

@@ -10,16 +10,10 @@ from kb.language.diagnostics import SourceSpan
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """An integer of 32 bits.
+    """An integer of 32 bits."""
 
-    Attributes
-    ----------
-    value : the integer.
-    span : the place in the source.
-    """
-
-    value: int
-    span: SourceSpan = field(compare=False)
+    value: int  # the integer
+    span: SourceSpan = field(compare=False)  # the place in the source
 
     def __str__(self) -> str:
         """Return the integer in decimal digits, after a minus sign when it is negative."""
@@ -28,16 +22,10 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A quoted string.
+    """A quoted string."""
 
-    Attributes
-    ----------
-    value : the characters themselves, without quotes, and with escapes replaced.
-    span : the place in the source.
-    """
-
-    value: str
-    span: SourceSpan = field(compare=False)
+    value: str  # the characters themselves, without quotes, and with escapes replaced
+    span: SourceSpan = field(compare=False)  # the place in the source
 
     def __str__(self) -> str:
         """Return the string in quotes, with escapes."""
@@ -47,18 +35,11 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A name with or without arguments, such as `square` or `corner(northeast)`. A fact is a symbol, too.
+    """A name with or without arguments, such as `square` or `corner(northeast)`. A fact is a symbol, too."""
 
-    Attributes
-    ----------
-    name : the name.
-    args : the arguments in order; () for a plain name.
-    span : the place in the source.
-    """
-
-    name: str
-    args: tuple["Term", ...]
-    span: SourceSpan = field(compare=False)
+    name: str  # the name
+    args: tuple["Term", ...]  # the arguments in order; () for a plain name
+    span: SourceSpan = field(compare=False)  # the place in the source
 
     @property
     def signature(self) -> tuple[str, int]:

@@ -27,19 +27,13 @@ BLOCK_COMMENT_MARK = re.compile(r"%\*|\*%")  # the begin or the end of a block c
 
 
 class Token(NamedTuple):
-    """One token.
+    """One token."""
 
-    Attributes
-    ----------
-    kind : `name`, `variable`, `number`, `string`, `directive`, `mark`, `comment`, `open` (a string that is not closed)
-        or `end`.
-    text : the characters as they stand in the source.
-    span : the place in the source, one line with columns from 1.
-    """
-
+    # `name`, `variable`, `number`, `string`, `directive`, `mark`, `comment`, `open` (a string that is not closed) or
+    # `end`
     kind: str
-    text: str
-    span: SourceSpan
+    text: str  # the characters as they stand in the source
+    span: SourceSpan  # the place in the source, one line with columns from 1
 
     @property
     def in_words(self) -> str:
@@ -50,14 +44,7 @@ class Token(NamedTuple):
 
 
 def tokenize(source: Source, problems: list[Problem], comments: bool = False) -> Iterator[Token]:
-    """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''.
-
-    A token holds its kind, its characters, and its place: one line, columns from 1.
-
-    source : the text.
-    problems : changed: the problem of each comment or string that is not closed is appended as soon as it is reached.
-    comments : whether comments that end with their line are yielded, too, with the kind `comment`.
-    """
+    """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''."""
     text, at, line, begin = source.text, 0, 1, 0
     while at < len(text):
         match = TOKEN_PATTERN.match(text, at)
@@ -82,10 +69,7 @@ def tokenize(source: Source, problems: list[Problem], comments: bool = False) ->
 
 
 def _block_end(text: str, start: int) -> int:
-    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed.
-
-    Indices are those of characters of the whole `text`, from 0.
-    """
+    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed."""
     depth = 0
     for edge in BLOCK_COMMENT_MARK.finditer(text, start):
         depth += 1 if edge.group() == "%*" else -1

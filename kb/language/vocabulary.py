@@ -46,14 +46,8 @@ WORLD_VOCABULARY: Vocabulary = {
 
 
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
-    """Return the type of a name or of `name(argument)`, such as corner(northeast).
-
-    It holds a name for messages, and a check that returns the complaint about a term, or None when the term fits.
-
-    name : the name that takes an argument.
-    argument : the type of its one argument.
-    otherwise : an example of the inner argument, for hints.
-    """
+    """Return the type of a name or of `name(argument)`, such as corner(northeast)."""
+    # It holds a name for messages, and a check that returns the complaint about a term, or None when the term fits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it fits."""
@@ -72,12 +66,8 @@ def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType
 
 
 def fact_argument(name: str, vocabulary: Vocabulary) -> ArgumentType:
-    """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G).
-
-    The type holds the name and a check: it returns the first complaint about the fact, or None when it is valid.
-
-    name : what the argument is called in messages. vocabulary : the types of the arguments by predicate.
-    """
+    """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G)."""
+    # The type holds the name and a check: it returns the first complaint about the fact, or None when it is valid.
 
     def check(term: Term) -> Complaint | None:
         """Return the first complaint about a term, or None when it is a valid fact of the vocabulary."""
@@ -185,22 +175,15 @@ class Openness(StrEnum):
 
 
 class BeliefPredicate(NamedTuple):
-    """A predicate of the world model.
+    """A predicate of the world model."""
 
-    Attributes
-    ----------
-    arguments : the types of its arguments.
-    open : the extent to which it may hold beyond what is believed.
-    subject : the index, from 0, of the argument that the fact is about.
-    confident : whether the last argument is a confidence in percent. A fact with a confidence between 0 and 100 may
-        have any other in truth.
-    settled : the names of the subjects of which the world model states all facts of this predicate that will ever hold.
-    """
-
-    arguments: tuple[ArgumentType, ...]
-    open: Openness
-    subject: int = 0
+    arguments: tuple[ArgumentType, ...]  # the types of its arguments
+    open: Openness  # the extent to which it may hold beyond what is believed
+    subject: int = 0  # the index, from 0, of the argument that the fact is about
+    # Whether the last argument is a confidence in percent. A fact with a confidence between 0 and 100 may have any
+    # other in truth.
     confident: bool = False
+    # The names of the subjects of which the world model states all facts of this predicate that will ever hold
     settled: frozenset[str] = frozenset()
 
 
@@ -322,40 +305,22 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
 
 
 def thing_positions(signature: Signature) -> frozenset[int]:
-    """Return the indices, from 0, of the arguments of a predicate of the world model that name nodes of any kind.
-
-    signature : name and number of arguments; the result is empty for a predicate that the world model does not have.
-    """
+    """Return the indices, from 0, of the arguments of a predicate of the world model that name nodes of any kind."""
     declared = BELIEF_PREDICATES.get(signature)
     types = declared.arguments if declared is not None else ()
     return frozenset(at for at, type_ in enumerate(types) if type_ is THING_ARGUMENT)
 
 
 def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -> list[Problem]:
-    """Return what is wrong with facts against a vocabulary: unknown predicates, wrong numbers and types of arguments.
-
-    Parameters
-    ----------
-    source : the text in which the facts stand, for the messages.
-    facts : the facts, in the order of the text.
-    vocabulary : the predicates of this kind of file, with the types of their arguments.
-
-    Returns
-    -------
-    The problems (file, place, message, source line, hint) in the order of the facts: one for an unknown predicate or a
-    wrong number of arguments, else one for each argument that does not fit; [] when all facts are valid.
-    """
+    """Return what is wrong with facts against a vocabulary."""
+    # Unknown predicates, wrong numbers and types of arguments.
     return [source.problem(*complaint) for fact in facts for complaint in _complaints(fact, vocabulary)]
 
 
 def _complaints(fact: Fact, vocabulary: Vocabulary) -> list[Complaint]:
-    """Return the complaints about one fact; [] when it is valid.
-
-    A complaint is a place (line and columns from 1), a message and a hint. One for an unknown predicate or a wrong
-    number of arguments; else one for each argument that does not fit, in order.
-
-    vocabulary : the types of the arguments by the name of the predicate.
-    """
+    """Return the complaints about one fact; [] when it is valid."""
+    # One for an unknown predicate or a wrong number of arguments; else one for each argument that does not fit, in
+    # order.
     types = vocabulary.get(fact.name)
     if types is None:
         hint = did_you_mean(fact.name, vocabulary) or f"known here: {', '.join(sorted(vocabulary))}"

@@ -25,13 +25,7 @@ _Ring = list[_Point]
 
 
 class WktError(ValueError):
-    """A text is not a valid shape.
-
-    Attributes
-    ----------
-    at : the index of the character where the text goes wrong, from 0.
-    what : the reason.
-    """
+    """A text is not a valid shape."""
 
     def __init__(self, at: int, what: str) -> None:
         self.at, self.what = at, what
@@ -40,19 +34,6 @@ class WktError(ValueError):
 
 def parse_wkt(text: str, kinds: tuple[str, ...] = WKT_KINDS) -> Any:
     """Return the shapely geometry that a text describes.
-
-    Parameters
-    ----------
-    text : the shape in well-known text; coordinates in squares.
-    kinds : the kinds of shapes that are accepted, of WKT_KINDS; all by default.
-
-    Returns
-    -------
-    A valid, non-empty shapely Point, LineString, Polygon or MultiPolygon; coordinates in squares.
-
-    Raises
-    ------
-    WktError : a syntax error, another kind, a ring that is not closed, or a boundary that crosses itself.
 
     Examples
     --------
@@ -89,30 +70,17 @@ def _flaw(shape: Any) -> str:
 
 
 class _Token(NamedTuple):
-    """A word of the text.
+    """A word of the text."""
 
-    Attributes
-    ----------
-    text : the word; '' for the end of the text.
-    at : the index of its first character, from 0.
-    """
-
-    text: str
-    at: int
+    text: str  # the word; '' for the end of the text
+    at: int  # the index of its first character, from 0
 
 
 class _Reader:
-    """A recursive-descent parser over the words of one text.
+    """A recursive-descent parser over the words of one text."""
 
-    Every method that reads moves on in the text, and raises WktError, with the place, where something else stands
-    there.
-
-    Attributes
-    ----------
-    text : the text.
-    tokens : its words in order, and '' after the last one.
-    next : the index in `tokens` of the word that is read next.
-    """
+    # Every method that reads moves on in the text, and raises WktError, with the place, where something else stands
+    # there.
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -121,10 +89,7 @@ class _Reader:
         self.next = 0
 
     def take(self) -> _Token:
-        """Return the next word and move on; the word after the last one is '', and returned again and again.
-
-        It holds the word, a mark or characters between marks and blanks, and the index of its first character, from 0.
-        """
+        """Return the next word and move on; the word after the last one is '', and returned again and again."""
         token = self.tokens[self.next]
         self.next += bool(token.text)
         return token
@@ -172,10 +137,7 @@ class _Reader:
         return point
 
     def several(self, part: Any) -> list[Any]:
-        """Read a list in brackets, `( part , part ... )`, and return its parts in order, at least one.
-
-        part : the function that reads one part and returns it.
-        """
+        """Read a list in brackets, `( part , part ... )`, and return its parts in order, at least one."""
         self.expect("(")
         parts = [part()]
         while self.expect(",)") == ",":
@@ -187,10 +149,7 @@ class _Reader:
         return self.several(self.point)
 
     def ring(self) -> _Ring:
-        """Read a closed ring with at least three corners, and return its points (x, y) in squares.
-
-        The last point repeats the first, in the text as well as in the result; a ring that is not closed is an error.
-        """
+        """Read a closed ring with at least three corners, and return its points (x, y) in squares."""
         at = self.tokens[self.next].at
         points = self.line()
         if points[0] != points[-1]:

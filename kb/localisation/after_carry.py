@@ -42,23 +42,7 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 
 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
-    """Return the explanation chosen for the observation after a push or a turn.
-
-    Parameters
-    ----------
-    state : what was believed before the observation; it is not changed.
-    surprise : the observation, with what it is judged by.
-    held : the object in hand, before the motion, map frame.
-    motion : as commanded, map frame.
-
-    Returns
-    -------
-    Judgement
-        `explanation` is the choice: its kind, Utak's place (x, y) in squares, map frame of its frame, the outcome for
-        the object, and the number of fields left unexplained (its residual). `blocked` is where a push may have ended,
-        `searches` the number of slow searches spent so far. Where nothing explains the observation without residual,
-        the cheapest explanation is chosen all the same.
-    """
+    """Return the explanation chosen for the observation after a push or a turn."""
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
     budget = SearchBudget(state.search_count)
@@ -92,22 +76,8 @@ def _outcomes(
     blocked: Iterable[Explanation],
     contacts: Iterable[ContactHypothesis],
 ) -> list[Explanation]:
-    """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, and so on.
-
-    Each has its kind (`how`), Utak's place (x, y) and the object's outline, map frame, in squares, and the number of
-    fields left unexplained. Blocked by a contact comes first, then stuck, blocked anywhere on the way (the furthest
-    first), slipped (the nearest first), smaller, larger and parted.
-
-    Parameters
-    ----------
-    state : what was believed before the observation.
-    surprise : the observation.
-    held : the object before the motion, map frame.
-    motion : as commanded, map frame.
-    whole : the explanation that the motion went as commanded.
-    blocked : where a push may have ended, by the observation; if there are none, contacts without residual are taken.
-    contacts : all contacts that may have blocked the motion, each a fraction (0 to 1) of the motion and its chance.
-    """
+    """Return what else may have come of the motion in the believed frame."""
+    # Blocked, stuck, slipped, smaller, and so on.
     ends = contact_outcomes(contacts, state.place, held.polygon, motion)
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
     outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, held.polygon, motion)]
@@ -119,19 +89,7 @@ def _outcomes(
 def _facts(
     state: TrackerState, surprise: Surprise, held: HeldObject, contacts: Iterable[ContactHypothesis]
 ) -> list[str]:
-    """Return the facts about the motion on which the choice depends, for kb/asp/accommodation.lp.
-
-    They are predicates without arguments and without a full stop: unchanged (the observation equals the one before),
-    clear (the motion hardly met anything), uneven (the object is known not to fill its squares). Those that do not hold
-    are left out; [] when none holds.
-
-    Parameters
-    ----------
-    state : what was believed; its newest observation is compared with the new one.
-    surprise : the new observation.
-    held : the object in hand, before the motion.
-    contacts : the contacts that the motion may have met, each with its probability.
-    """
+    """Return the facts about the motion on which the choice depends, for kb/asp/accommodation.lp."""
     facts = {
         "unchanged": np.array_equal(surprise.ranges, state.observations[-1].ranges),
         "clear": sum(contact.chance for contact in contacts) <= MAX_CLEAR_CHANCE,
@@ -141,20 +99,8 @@ def _facts(
 
 
 def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
-    """Return where a push may have ended, its whole way included, as far as the observation agrees.
-
-    One explanation for each end, the whole way first (kind predicted), then contacts (kind blocked), the likeliest
-    first. Each has Utak's place (x, y) in squares, map frame, the object's outline there, and its chance (0 to 1)
-    before the observation. Empty for a turn, when the push can hardly have met anything, or when the observation agrees
-    with none.
-
-    Parameters
-    ----------
-    state : what was believed before the observation.
-    surprise : the observation after the push.
-    held : the object before the push, map frame.
-    motion : as commanded, map frame.
-    """
+    """Return where a push may have ended, its whole way included, as far as the observation agrees."""
+    # Empty for a turn, when the push can hardly have met anything, or when the observation agrees with none.
     ended = []
     for end in possible_ends(surprise, held, motion):
         assert end.outcome is not None
@@ -163,19 +109,7 @@ def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, mot
 
 
 def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: Explanation) -> list[Explanation]:
-    """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing.
-
-    It is of kind smaller, without residual (no field contradicts it), at the place of `whole`; its outcome has the
-    smaller outline (shapely Polygon, map frame) and the narrowed sub-cell extent (how far each side lies within the
-    squares in which the object was seen).
-
-    Parameters
-    ----------
-    state : what was believed before the observation.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-    held : the object before the motion, map frame.
-    whole : the explanation that the motion went as commanded; it has an outcome.
-    """
+    """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing."""
     outcome = whole.outcome
     assert outcome is not None
     lying = held.moved(outcome.polygon, held.slack, outcome.degrees, commanded=True)
@@ -187,42 +121,13 @@ def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: 
 
 
 def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:
-    """Return the explanation that the motion of the object in hand had an outcome, in the believed frame.
-
-    It is of the kind and at the place (x, y in squares, map frame) of the outcome. Its residual is the number of fields
-    that contradict that outcome, 0 when none does.
-
-    Parameters
-    ----------
-    state : what was believed before the observation.
-    surprise : the observation, whose counts are compared.
-    outcome : where Utak and the object ended, map frame.
-    """
+    """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
     residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
     return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
 
 
 def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
-    """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it.
-
-    The sub-cell extent is how far, by less than a square, each side lies within the squares in which the object was
-    seen. The result is `held` with narrower `insets` (the possible distances of each side from the outer line of those
-    squares, inwards, in squares) and with its outline `polygon` (shapely Polygon, map frame) drawn accordingly; all
-    else is as in `held`, which is not changed. Squares that the object may leave free are taken for floor, not for
-    something that happens to fill them.
-
-    Parameters
-    ----------
-    state : what is believed; its map and the other held objects are used.
-    held : the object where it lies at the time of the observation, map frame.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-    place : where the observation was made, (x, y) in squares, map frame.
-
-    Returns
-    -------
-    HeldObject or None
-        None as well when its sides are not parallel to the grid, or its place is known only roughly.
-    """
+    """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it."""
     frame, others, nothing = state.frame, state.others(held), NO_SQUARES
     floor = state.occupancy.supposing(patch_of_polygon(held.polygon).squares())
 
@@ -234,18 +139,8 @@ def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, p
 
 
 def contact_suspects(state: TrackerState, held: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:
-    """Return the open squares one of which probably stopped an object, (column, row) of the map frame.
-
-    Those that the chosen outcome names, if it does. Else empty when nothing was stopped, when what stopped it is known,
-    or when the object was never seen to move.
-
-    Parameters
-    ----------
-    state : what is believed, with the chosen frame.
-    held : the object before the motion, map frame.
-    chosen : the chosen explanation of the observation after the motion.
-    motion : as commanded, map frame.
-    """
+    """Return the open squares one of which probably stopped an object, (column, row) of the map frame."""
+    # Else empty when nothing was stopped, when what stopped it is known, or when the object was never seen to move.
     return suspected_squares(chosen.outcome, motion, held, state.others(held), state.occupancy)
 
 
@@ -257,21 +152,7 @@ def moved_object(
     ranges: FieldRanges,
     suspected: frozenset[Square],
 ) -> HeldObject:
-    """Return the object in hand after the chosen outcome of a motion: its outline, map frame, and what else changed.
-
-    That is its rotation in degrees, its tolerance `slack` in squares, and the counts of its motions without effect.
-    Where it did not move only those counts change, and its place may become inexact. An object whose place is known
-    only roughly is moved to touch the known obstacle that seems to have blocked it.
-
-    Parameters
-    ----------
-    state : what is believed, with the chosen frame.
-    held : the object before the motion.
-    chosen : the chosen explanation.
-    motion : as commanded, map frame.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
-    suspected : the squares that `contact_suspects` returns.
-    """
+    """Return the object in hand after the chosen outcome of a motion: its outline, map frame, and what else changed."""
     others, place = state.others(held), chosen.place
     held = replace(held, inexact=held.inexact or state.slipped)
     carried = object_after(held, chosen.outcome, chosen.unexplained, bool(suspected))
@@ -284,17 +165,9 @@ def moved_object(
 
 
 def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHypothesis, ...]:
-    """Return the frame hypotheses left by an observation of objects that were turned, in their order.
-
-    Each is an angle in degrees and a box of origins (west, south, east, north) in squares, map frame. Where several
-    exact origins (hypotheses that name one point) of the believed orientation are left, those are returned that agree
-    with the observation, or all of them when none does; otherwise all hypotheses, unchanged.
-
-    Parameters
-    ----------
-    state : what is believed, with the motion before the observation applied.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-    """
+    """Return the frame hypotheses left by an observation of objects that were turned, in their order."""
+    # Where several exact origins (hypotheses that name one point) of the believed orientation are left, those are
+    # returned that agree with the observation, or all of them when none does; otherwise all hypotheses, unchanged.
     within = _exact_origins(state)
     if len(within) <= 1:
         return state.hypotheses
@@ -304,12 +177,8 @@ def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHyp
 
 
 def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
-    """Return all held objects, by name, with `astray` set: how far each may lie from its believed place, in squares.
-
-    All else of them stays as it was, map frame; `state` is not changed. Every turn was about the true place of Utak, so
-    an origin that is open leaves the place of a turned object open. It is 0, or the rounding of commands, where the
-    origin is certain.
-    """
+    """Return all held objects, by name, with `astray` set: how far each may lie from its believed place, in squares."""
+    # Every turn was about the true place of Utak, so an origin that is open leaves the place of a turned object open.
     origins = [hypothesis.frame.origin for hypothesis in _exact_origins(state)]
     away = np.array(origins).reshape(-1, 2) - np.array(state.frame.origin)
     held_objects = {}
@@ -321,10 +190,5 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
 
 
 def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:
-    """Return the hypotheses of the believed orientation that name an exact origin, in their order; empty for none.
-
-    Each has the believed angle (degrees) and a box that is one point of the square of waking (squares, map frame).
-
-    state : what is believed; its frame and hypotheses are asked.
-    """
+    """Return the hypotheses of the believed orientation that name an exact origin, in their order; empty for none."""
     return tuple(h for h in state.hypotheses if h.angle == state.frame.angle and h.is_point)

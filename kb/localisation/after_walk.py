@@ -51,37 +51,16 @@ SETTLED_SPREAD = math.radians(5)  # orientations that differ by less hardly caus
 
 @dataclass(frozen=True)
 class DeadReckoning:
-    """The end of a walk by dead reckoning.
+    """The end of a walk by dead reckoning."""
 
-    Attributes
-    ----------
-    predicted : where the walk ends if nothing blocked it, (x, y) in squares, map frame.
-    blocked : where it may have been blocked: both sides of each grid line on the way, the one nearest to the end first,
-        and last the start; empty when there was no walk. Map frame.
-    """
-
-    predicted: Position
+    predicted: Position  # where the walk ends if nothing blocked it, (x, y) in squares, map frame
+    # Where it may have been blocked: both sides of each grid line on the way, the one nearest to the end first, and
+    # last the start; empty when there was no walk. Map frame.
     blocked: tuple[Position, ...]
 
 
 def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
-    """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand.
-
-    Parameters
-    ----------
-    state : what was believed before the observation; it is not changed.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each of its fields.
-    ends : the end of the walk by dead reckoning.
-    command : the command before the observation, Utak's own frame; None on waking.
-
-    Returns
-    -------
-    Judgement
-        `explanation` is the choice: its kind, Utak's place (x, y) in squares, map frame of its frame, and the number of
-        fields left unexplained (its residual). With it, what was learnt: where the walk may have ended (`blocked`), the
-        hypotheses of the frame, weighed anew (None when they stay), and the number of slow searches spent. Where
-        nothing explains the observation without residual, the cheapest explanation is chosen all the same.
-    """
+    """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand."""
     return _WalkExplainer(state, ranges, ends, command).judge()
 
 
@@ -89,15 +68,7 @@ class _WalkExplainer:
     """The proposals for one observation, in the order in which they are made; each is made only when it is needed."""
 
     def __init__(self, state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> None:
-        """Compute the explanation that the walk went its whole way, and where it may have been blocked.
-
-        Parameters
-        ----------
-        state : what was believed before the observation.
-        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-        ends : the end of the walk by dead reckoning, map frame.
-        command : the command before the observation, Utak's own frame; None on waking.
-        """
+        """Compute the explanation that the walk went its whole way, and where it may have been blocked."""
         self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
         self._budget = SearchBudget(state.search_count)
         ahead = [self._explanation("predicted", place, ends.predicted) for place in observation_places(ends.predicted)]
@@ -114,11 +85,7 @@ class _WalkExplainer:
         )
 
     def judge(self) -> Judgement:
-        """Return the chosen explanation, with what was learnt while choosing; the state is not changed.
-
-        That is a kind, a place (x, y) in squares, map frame of its frame, and the number of fields left unexplained;
-        with it where the walk may have ended, the frame hypotheses weighed anew, and the number of searches spent.
-        """
+        """Return the chosen explanation, with what was learnt while choosing; the state is not changed."""
         state, first = self._state, self._whole
         if not state.held_objects:
             stopped = [motion for motion in state.earlier if motion.blocked]
@@ -144,27 +111,14 @@ class _WalkExplainer:
         return self._judgement(choose(state, self._all(first, turned)))
 
     def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
-        """Return a chosen explanation with what was learnt while choosing it.
-
-        That is the number of slow searches spent so far, and where the walk may have ended by its observation: places
-        (x, y) in squares, map frame, each with its chance; empty where it can have met nothing.
-
-        left : the frame hypotheses that are left, if they were weighed anew; None when they stay as they are.
-        """
+        """Return a chosen explanation with what was learnt while choosing it."""
+        # That is the number of slow searches spent so far, and where the walk may have ended by its observation: places
+        # (x, y) in squares, map frame, each with its chance; empty where it can have met nothing.
+        # None when they stay as they are.
         return Judgement(chosen, self._budget.spent, self._possible_ends, left)
 
     def _all(self, first: Explanation, turned: list[Explanation]) -> list[Explanation]:
-        """Return all explanations: first the walk as predicted, then blocked, slipped, other frames, earlier motions.
-
-        Each has its kind (`how`), the place of the observation (x, y) in squares, map frame of its frame, and the
-        number of fields that it leaves unexplained. Blocked ones: the likeliest first where chances are known, else the
-        last grid line first; slipped ones: the nearest to the predicted end first.
-
-        Parameters
-        ----------
-        first : that the walk ended as predicted, with the fields that it leaves unexplained.
-        turned : the explanations by another frame; may be empty.
-        """
+        """Return all explanations: the walk as predicted, then blocked, slipped, other frames, earlier motions."""
         state = self._state
         explanations = [first]
         explanations += [one for one in self._possible_ends if one.how != "predicted"]
@@ -189,14 +143,8 @@ class _WalkExplainer:
         return explanations
 
     def _blocked_walk(self, command: Move) -> tuple[Explanation, ...]:
-        """Return where the walk may have ended, its whole way included, as far as the observation agrees.
-
-        One explanation for each end and side of a grid line, the whole way first, then contacts, the likeliest first.
-        Each has its place (x, y) in squares, map frame, and its chance (0 to 1) before the observation. Empty when the
-        walk can hardly have met anything, or when the observation agrees with none.
-
-        command : the walk, (east, north) in squares, Utak's own frame.
-        """
+        """Return where the walk may have ended, its whole way included, as far as the observation agrees."""
+        # Empty when the walk can hardly have met anything, or when the observation agrees with none.
         surprise = self._state.surprise(command, self._ranges)
         motion = Translate(*self._state.frame.to_map(command.east, command.north))
         found = possible_ends(surprise, None, motion)
@@ -204,18 +152,7 @@ class _WalkExplainer:
         return consistent_ends(surprise, ended)
 
     def _earlier_walks(self, turned: list[Explanation], others: list[Explanation]) -> list[Explanation]:
-        """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known.
-
-        Where another frame explains everything, only contacts with something known, or of a known chance, are proposed;
-        where there are none, both the newest and an earlier walk may have been blocked. All are of kind misled; [] for
-        none. Each has the corrected place of the newest observation, (x, y) in squares, map frame of its frame, and the
-        number of fields left unexplained; contacts with something known come first.
-
-        Parameters
-        ----------
-        turned : the explanations by another frame.
-        others : all explanations so far.
-        """
+        """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
         state = self._state
         if all(e.unexplained for e in turned):
             simple = any(not e.unexplained for e in others if e.how != "slipped" or state.slipped)
@@ -228,14 +165,7 @@ class _WalkExplainer:
         return met or self._both_blocked()
 
     def _blocked_elsewhere(self, walks: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
-        """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed.
-
-        Ends of the newest walk in the believed frame are left out if they were proposed already. [] when there is none.
-        Each has the corrected place of the newest observation, (x, y) in squares, map frame of its frame. Contacts with
-        something known come first, then the orientations nearest to the median.
-
-        walks : for each walk its re-estimations (other ends with which no observations contradict each other).
-        """
+        """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed."""
         state = self._state
         judged = len(state.observations) if self._possible_ends else None
         found = ((e, e.reestimated) for e in reestimated_explanations(walks) if e.reestimated is not None)
@@ -246,12 +176,7 @@ class _WalkExplainer:
         ]
 
     def _both_blocked(self) -> list[Explanation]:
-        """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame.
-
-        All are of kind misled and without residual, with the newest of the earlier walks first; [] when the believed
-        frame was not among the hypotheses when the walk began, or when nothing fits. The place of each is where the
-        newest walk ended, (x, y) in squares, map frame; `distance` adds up both corrections, in squares.
-        """
+        """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame."""
         state, newest, found = self._state, self._state.motions[-1], []
         believed = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
         pairs = [(motion, hypothesis) for hypothesis in believed for motion in reversed(state.earlier)]
@@ -262,16 +187,7 @@ class _WalkExplainer:
         return found
 
     def _best_prior(self, ended: Sequence[Explanation], left: tuple[FrameHypothesis, ...]) -> Explanation:
-        """Return the choice between the believed frame, which nothing contradicts, and the one of the best map prior.
-
-        The map prior of a frame is how simple the simplest map is that agrees with all counts in it. The choice is one
-        of `ended` (their kind and place), or of kind turned: the same place of Utak's own frame in the best frame.
-
-        Parameters
-        ----------
-        ended : the explanations in the believed frame, at least one.
-        left : the frame hypotheses that are left, weighed; one of them contains the believed frame.
-        """
+        """Return the choice between the believed frame, uncontradicted, and that of the best map prior."""
         state = self._state
         cost = next(h.prior_cost for h in left if h.contains(state.frame))
         explanations = [one._replace(prior_cost=one.prior_cost + cost) for one in ended]
@@ -282,18 +198,7 @@ class _WalkExplainer:
         return choose(state, explanations, ["stands"])
 
     def _other_frame(self, left: tuple[FrameHypothesis, ...], recent: list[Observation]) -> list[Explanation]:
-        """Return the explanation by another frame, where observations contradict the believed one, in a list.
-
-        It is of kind turned; [] when no frame is left, else one: the frame, the place (x, y) in squares, map frame of
-        it, the number of fields unexplained, whether the origin has suspiciously little room, and the hypotheses left.
-        All frames are searched anew, at the cost of 1 slow search, when those that are left explain too little and the
-        budget allows it.
-
-        Parameters
-        ----------
-        left : the frame hypotheses that are left, weighed.
-        recent : the last observations by which frames are judged, oldest first, the new one included.
-        """
+        """Return the explanation by another frame, where observations contradict the believed one, in a list."""
         state, observation = self._state, self._observation
         if state.likely_spread <= SETTLED_SPREAD:  # another origin is likelier than another orientation
             beside = consistent_hypotheses(recent, any_origin((state.frame.angle,)))
@@ -313,13 +218,7 @@ class _WalkExplainer:
         return [turned] * bool(left)
 
     def _best_frame(self, left: tuple[FrameHypothesis, ...]) -> tuple[Frame, int]:
-        """Return the frame of the least residual among those left, and that residual (a count of fields).
-
-        A frame is an angle in degrees and an origin in the square of waking. The residual is over all observations; of
-        equal ones the likeliest frame is returned, and the search ends at the first without residual. Not all frames
-        are tried where there are many observations. When no hypothesis is left, the believed frame is returned with
-        NO_FRAME_RESIDUAL.
-        """
+        """Return the frame of the least residual among those left, and that residual (a count of fields)."""
         state = self._state
         if not left:
             return state.frame, NO_FRAME_RESIDUAL
@@ -334,16 +233,6 @@ class _WalkExplainer:
         return frames[number], residual
 
     def _explanation(self, how: str, place: Position, predicted: Position) -> Explanation:
-        """Return the explanation that the observation was made at `place`, in the believed frame.
-
-        Its residual is the number of fields that contradict the map, or a held object, from there; 0 when none does.
-
-        Parameters
-        ----------
-        how : its kind, as of `Explanation.how`.
-        place : (x, y) in squares, map frame.
-        predicted : the place by dead reckoning, map frame; the explanation's `distance` is the distance from it, in
-            squares.
-        """
+        """Return the explanation that the observation was made at `place`, in the believed frame."""
         residual = residual_at(self._state, self._ranges, place, self._state.held_objects.values())
         return Explanation(how, place, self._state.frame, residual, math.dist(place, predicted))

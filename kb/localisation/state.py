@@ -31,64 +31,39 @@ LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an ear
 
 @dataclass(frozen=True)
 class TrackerState:
-    """Everything the localisation tracker believes after an observation.
+    """Everything the localisation tracker believes after an observation."""
 
-    Two frames: the map frame has its axes along the grid, x to the east and y to the north, and (0, 0) at the
-    south-west corner of the square of waking. Utak's own frame has its origin where Utak woke, with north the way it
-    faced.
-
-    Attributes
-    ----------
-    occupancy : the occupancy map, map frame. The tracker updates it in place; everybody else only reads it.
-    frame : the believed frame: the angle, in degrees, by which Utak's own frame is turned against the map frame, and
-        its origin, a point of the square of waking.
-    place : where Utak is: (x, y) in squares, map frame.
-    observations : all observations since the tracker began, oldest first; each keeps its place in Utak's own frame.
-    hypotheses : the frame hypotheses that are left.
-    confirmations : number of observations in a row that confirmed the believed frame.
-    blocked_squares : squares that stopped Utak himself when a motion was about to enter them, map frame.
-    suspected_squares : open squares (not settled as free or occupied) one of which probably stopped a held object, map
-        frame.
-    search_count : number of slow proposals that found nothing or searched all frames. It limits further ones.
-    slipped : whether any motion ended beside its predicted end.
-    motions : the last straight motions, oldest first. Each may have ended otherwise than believed.
-    held_objects : all objects that were ever held, by name, map frame.
-    in_hand : the name of the object in the hand; None when the hand is empty.
-    residuals : number of unexplained fields of each of the last observations, oldest first; 4 at most.
-    been : places of the observations before the tracker began anew, oldest first, (east, north) in squares, Utak's own
-        frame.
-    completions : the newest completions of the map in this frame (sampled maps that agree with all counts); None when
-        none were drawn.
-    """
-
+    # The occupancy map, map frame. The tracker updates it in place; everybody else only reads it.
     occupancy: OccupancyMap = field(default_factory=OccupancyMap)
+    # The believed frame: the angle, in degrees, by which Utak's own frame is turned against the map frame, and its
+    # origin, a point of the square of waking
     frame: Frame = field(default_factory=Frame)
-    place: Position = CENTRE
+    place: Position = CENTRE  # where Utak is: (x, y) in squares, map frame
+    # All observations since the tracker began, oldest first; each keeps its place in Utak's own frame
     observations: tuple[Observation, ...] = ()
-    hypotheses: tuple[FrameHypothesis, ...] = CENTRED_HYPOTHESES
-    confirmations: int = 0
+    hypotheses: tuple[FrameHypothesis, ...] = CENTRED_HYPOTHESES  # the frame hypotheses that are left
+    confirmations: int = 0  # number of observations in a row that confirmed the believed frame
+    # Squares that stopped Utak himself when a motion was about to enter them, map frame
     blocked_squares: frozenset[Square] = frozenset()
+    # Open squares (not settled as free or occupied) one of which probably stopped a held object, map frame
     suspected_squares: frozenset[Square] = frozenset()
-    search_count: int = 0
-    slipped: bool = False
+    search_count: int = 0  # number of slow proposals that found nothing or searched all frames. It limits further ones.
+    slipped: bool = False  # whether any motion ended beside its predicted end
+    # The last straight motions, oldest first. Each may have ended otherwise than believed.
     motions: tuple[MotionHypothesis, ...] = ()
+    # All objects that were ever held, by name, map frame
     held_objects: Mapping[str, HeldObject] = field(default_factory=dict)
-    in_hand: str | None = None
+    in_hand: str | None = None  # the name of the object in the hand; None when the hand is empty
+    # Number of unexplained fields of each of the last observations, oldest first; 4 at most
     residuals: tuple[int, ...] = ()
+    # Places of the observations before the tracker began anew, oldest first, (east, north) in squares, Utak's own frame
     been: tuple[Position, ...] = ()
+    # The newest completions of the map in this frame (sampled maps that agree with all counts); None when none were
+    # drawn
     completions: Completions | None = None
 
     def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
-        """Return an observation that contradicts this state, with what of the state it is judged by.
-
-        The result holds the command and the counts as given and, unchanged from this state, the frame, place, map,
-        observations, held objects, hypotheses and completions; nothing is computed, and nothing is changed here.
-
-        Parameters
-        ----------
-        command : the command before the observation, Utak's own frame.
-        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-        """
+        """Return an observation that contradicts this state, with what of the state it is judged by."""
         return Surprise(
             command,
             ranges,
@@ -111,10 +86,7 @@ class TrackerState:
 
     @property
     def track(self) -> list[Position]:
-        """Return all places of observations as (x, y) in squares, oldest first; map frame.
-
-        One for each observation, repeated places included. Those before a new beginning of the tracker are included.
-        """
+        """Return all places of observations as (x, y) in squares, oldest first; map frame."""
         return [
             self.frame.place_from_utak(*place)
             for place in (*self.been, *(observation.place for observation in self.observations))
@@ -127,20 +99,13 @@ class TrackerState:
 
     @property
     def passed(self) -> frozenset[Square]:
-        """Return the squares through which the robot went on the present map: (column, row), map frame.
-
-        They let it pass, also where a wall covers them in part.
-        """
+        """Return the squares through which the robot went on the present map: (column, row), map frame."""
         track = self.track[len(self.been) :]
         return frozenset(square for way in pairwise(track) for square in squares_passed(*way))
 
     @property
     def leeway(self) -> tuple[float, float, float, float]:
-        """Return how far the true origin of the frame may lie from the believed one: (west, south, east, north).
-
-        In squares of the map frame: west and south are not above 0, east and north are not below 0; all 0 when it is
-        certain.
-        """
+        """Return how far the true origin of the frame may lie from the believed one: (west, south, east, north)."""
         return origin_leeway(self.frame, self.observations, self.hypotheses)
 
     @property
@@ -150,56 +115,35 @@ class TrackerState:
 
     @property
     def beside_line(self) -> bool:
-        """Return whether a contact at a grid line has fixed the origin in one axis, but for the width of a contact.
-
-        That width is 2e-6 squares.
-        """
+        """Return whether a contact at a grid line has fixed the origin in one axis, but for the width of a contact."""
         return min(map(abs, self.leeway)) <= 2 * LINE_DISTANCE
 
     # -- certainty -------------------------------------------------------------------------------
 
     @property
     def lost(self) -> bool:
-        """Return whether localisation has failed: observation after observation contradicts what is believed.
-
-        So it is when the last 4 observations together left at least 8 fields unexplained (24 once an object was moved),
-        and more than one of them left any.
-        """
+        """Return whether localisation has failed: observation after observation contradicts what is believed."""
         moved = any(held.proven for held in self.held_objects.values())
         limit = MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
         return sum(self.residuals) >= limit and sum(residual > 0 for residual in self.residuals) > 1
 
     @property
     def spread(self) -> float:
-        """Return the greatest difference between the believed orientation and one that is left, in radians.
-
-        It is 0 when no other orientation is left.
-        """
+        """Return the greatest difference between the believed orientation and one that is left, in radians."""
         return self._spread(self.hypotheses)
 
     @property
     def likely_spread(self) -> float:
-        """Return the greatest difference between the believed orientation and a plausible one that is left, in radians.
-
-        Plausible are orientations whose map prior is hardly worse than the best one (PLAUSIBLE_COST); 0 when there is
-        none.
-        """
+        """Return the greatest difference between the believed orientation and a plausible one left, in radians."""
         return self._spread(other for other in self.hypotheses if other.is_plausible)
 
     def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
-        """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians.
-
-        It is 0 for no hypotheses.
-        """
+        """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians."""
         return math.radians(max((abs(other.angle - self.frame.angle) for other in hypotheses), default=0))
 
     @property
     def sure(self) -> bool:
-        """Return whether what the counts settle is beyond doubt.
-
-        It is not after observations contradicted each other or a motion slipped, while one of the last motions may have
-        ended in another square, or while several frame hypotheses are left that differ from Utak's own axes.
-        """
+        """Return whether what the counts settle is beyond doubt."""
         along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
         settled = not (self.shaken or any(map(self._elsewhere_likely, self.motions)))
         return settled and (along or len(self.hypotheses) == 1)
@@ -210,10 +154,7 @@ class TrackerState:
         return self.slipped or self.occupancy.overruled > 0
 
     def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
-        """Return whether a motion may well have ended in another square than believed, by the observation after it.
-
-        False when that observation is not integrated yet. Likely is an end of a probability above LIKELY_END_CHANCE.
-        """
+        """Return whether a motion may well have ended in another square than believed, by the observation after it."""
         if motion.number >= len(self.observations):
             return False
         places = [self.observations[motion.number].place, *motion.likely_ends(LIKELY_END_CHANCE)]
@@ -224,21 +165,14 @@ class TrackerState:
 
     @property
     def closed(self) -> frozenset[Square]:
-        """Return the squares (column, row) of the map frame that stopped a motion, and so are (probably) occupied.
-
-        A square seen to be free is left out when motions slip, or when all eight squares around it are free, too: then
-        the contact, or its place, was believed wrongly. Suspected squares count only while the counts leave them open.
-        """
+        """Return the squares (column, row) of the map frame that stopped a motion, and so are (probably) occupied."""
         blocked = self.blocked_squares
         certain = set() if self.slipped else {square for square in blocked if not self._free_around(*square)}
         doubted = (blocked | self.suspected_squares) - certain
         return frozenset((*certain, *(s for s in doubted if self.occupancy.state[self.occupancy.index(*s)] == OPEN)))
 
     def _free_around(self, x: int, y: int) -> bool:
-        """Return whether the square (x, y) of the map frame and its eight neighbours are settled as free.
-
-        Neighbours beyond the map are not asked.
-        """
+        """Return whether the square (x, y) of the map frame and its eight neighbours are settled as free."""
         row, column = self.occupancy.index(x, y)
         around = self.occupancy.state[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
         return bool((around == FREE).all())
@@ -247,35 +181,19 @@ class TrackerState:
 
     @property
     def reestimable(self) -> tuple[MotionHypothesis, ...]:
-        """Return the last straight motions, oldest first, that can be re-estimated (other ends of them can be tried).
-
-        Those are the ones with an empty hand, or with an object that is known still. Each holds the number of the
-        observation after it, the commanded shift (east, north) in squares, Utak's own frame, and its other ends.
-        """
+        """Return the last straight motions, oldest first, that can be re-estimated (may have other ends)."""
         return tuple(motion for motion in self.motions if motion.in_hand is None or motion.in_hand in self.held_objects)
 
     @property
     def earlier(self) -> tuple[MotionHypothesis, ...]:
-        """Return the last straight motions whose observation has been integrated already, oldest first.
-
-        Each holds the number of that observation, the commanded shift (east, north) in squares, Utak's own frame, and
-        its other ends. Only those that can be re-estimated (see `reestimable`): with an empty hand, or with an object
-        that is known still.
-        """
+        """Return the last straight motions whose observation has been integrated already, oldest first."""
         return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
 
     @property
     def doubtful(self) -> tuple[MotionHypothesis, ...]:
-        """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first.
-
-        Their observation is integrated already, and they have another end of a probability above LIKELY_END_CHANCE
-        (0.05). Each holds its commanded shift and its other ends, (east, north) in squares, Utak's own frame.
-        """
+        """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first."""
         return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
 
     def others(self, held: HeldObject) -> list[HeldObject]:
-        """Return all objects that were ever held except the one of the name of `held`, where they lie, map frame.
-
-        They come in the order in which they were first held; [] when there is no other.
-        """
+        """Return all objects that were ever held except the one of the name of `held`, where they lie, map frame."""
         return [other for other in self.held_objects.values() if other.name != held.name]

@@ -45,60 +45,28 @@ RESIDUAL_WINDOW = 4  # last observations by whose residuals a localisation failu
 
 @dataclass
 class Tracker:
-    """The one owner of the localisation state.
+    """The one owner of the localisation state."""
 
-    Attributes
-    ----------
-    state : what is believed after the newest observation. It is replaced, never changed, but for its occupancy map,
-        which the tracker updates in place.
-    """
-
+    # What is believed after the newest observation. It is replaced, never changed, but for its occupancy map, which the
+    # tracker updates in place.
     state: TrackerState = field(default_factory=TrackerState)
 
     # -- what others call ------------------------------------------------------------------------
 
     def anew(self) -> "Tracker":
-        """Return a tracker that begins anew at the believed place, with an empty map and all frame hypotheses.
-
-        Called after a localisation failure. The believed frame and place stay, and the track is kept, so that the robot
-        knows about where it came from; the newest observation is left out of it, for it is made again. No object is
-        known or in hand, and no observation, motion or completion is kept. This tracker is not changed.
-        """
+        """Return a tracker that begins anew at the believed place, with an empty map and all frame hypotheses."""
+        # The believed frame and place stay, and the track is kept, so that the robot knows about where it came from;
+        # the newest observation is left out of it, for it is made again.
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
         return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been))
 
     def wake(self, impression: Impression) -> Accommodation:
-        """Explain and integrate the first impression; `state` is replaced.
-
-        Parameters
-        ----------
-        impression : what the senses return on waking.
-
-        Returns
-        -------
-        Accommodation
-            The chosen explanation (its kind, the place of the observation (x, y) in squares, map frame, the frame, and
-            the number of fields left unexplained), and how each of the 160 fields of the retina is accounted for:
-            predicted, explained or noise, in the order of an impression.
-        """
+        """Explain and integrate the first impression; `state` is replaced."""
         return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
 
     def accommodate(self, command: Command, impression: Impression) -> Accommodation:
-        """Explain and integrate the impression that followed a command; `state` is replaced.
-
-        Parameters
-        ----------
-        command : the command, in Utak's own frame (origin where Utak woke, north the way it faced).
-        impression : what the senses returned after it.
-
-        Returns
-        -------
-        Accommodation
-            The chosen explanation (its kind, where Utak is then (x, y) in squares, map frame, the frame, the outcome
-            for an object in hand, and the number of fields left unexplained), and how each of the 160 fields of the
-            retina is accounted for: predicted, explained or noise, in the order of an impression.
-        """
+        """Explain and integrate the impression that followed a command; `state` is replaced."""
         ranges, state = count_ranges(impression.retina), self.state
         if state.in_hand is not None and isinstance(command, Push | Turn):
             return self._after_carry(ranges, state.in_hand, command)
@@ -113,15 +81,7 @@ class Tracker:
         )
 
     def grasp(self, held: HeldObject) -> None:
-        """Believe that an object is in the hand; `state` is replaced.
-
-        The squares of an object that was never held before become floor in the occupancy map.
-
-        Parameters
-        ----------
-        held : the object, where it is believed to lie, map frame. For the name of an object held before only the name
-            counts: what is known of that one is kept.
-        """
+        """Believe that an object is in the hand; `state` is replaced."""
         held_objects = self.state.held_objects
         if held.name not in held_objects:
             self._declare(held.possible, FREE)
@@ -129,53 +89,23 @@ class Tracker:
         self.state = replace(self.state, held_objects=held_objects, in_hand=held.name)
 
     def update_object(self, held: HeldObject) -> None:
-        """Replace what is known of an object that was held before; `state` is replaced.
-
-        Parameters
-        ----------
-        held : what is known of it now, map frame; it bears the same name.
-        """
+        """Replace what is known of an object that was held before; `state` is replaced."""
         self.state = replace(self.state, held_objects={**self.state.held_objects, held.name: held})
 
     def withdraw(self, name: str) -> None:
-        """Forget an object that was in hand and never moved; `state` is replaced.
-
-        The map is made anew from all observations, as if it had never been held.
-
-        Parameters
-        ----------
-        name : of the object; it is not in hand.
-        """
+        """Forget an object that was in hand and never moved; `state` is replaced."""
         state = self.state
         left = [held for held in state.held_objects.values() if held.name != name]
         self.state = _remapped(state, remap(state.frame, state.frame, state.observations, left))
 
     def keep_completions(self, completions: Completions | None) -> None:
-        """Keep the newest completions of the map in `state`; the chance of a contact is estimated by them.
-
-        Parameters
-        ----------
-        completions : sampled maps that agree with all counts, in the believed frame; None when none were drawn.
-        """
+        """Keep the newest completions of the map in `state`; the chance of a contact is estimated by them."""
         self.state = replace(self.state, completions=completions)
 
     # -- after a walk, on waking, after a release ------------------------------------------------
 
     def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodation:
-        """Explain and integrate an observation after a walk, or after a command that leaves everything in place.
-
-        Parameters
-        ----------
-        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-        walk : where the walk ends, and may have been blocked, map frame.
-        command : in Utak's own frame; None on waking.
-
-        Returns
-        -------
-        Accommodation
-            The chosen explanation, with where Utak is then (x, y) in squares, map frame of its frame, and how each of
-            the 160 fields is accounted for (predicted, explained or noise). `state` is replaced.
-        """
+        """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
         if walk.blocked and isinstance(command, Move):
             self._remember(command)
         judged = explain_walk(self.state, ranges, walk, command)
@@ -190,24 +120,13 @@ class Tracker:
         return self._integrate(explanation, ranges)
 
     def _count_confirmations(self, explanation: Explanation) -> None:
-        """Count a predicted observation as a confirmation in `state`.
-
-        Any other explanation leaves the count as it is if the chance of its end is known; else the count begins at 0
-        again.
-
-        explanation : the chosen one; its kind `how` and its `chance` are asked.
-        """
+        """Count a predicted observation as a confirmation in `state`."""
         number = self.state.confirmations
         number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
         self.state = replace(self.state, confirmations=number)
 
     def _note_motion(self, explanation: Explanation) -> None:
-        """Note in `state` that motions slip, or which of the remembered motions was blocked, if an explanation says so.
-
-        After a slip (an end beside the predicted one) all remembered motions are forgotten.
-
-        explanation : the chosen one, applied already; its kind and the motion that it re-estimates are asked.
-        """
+        """Note in `state` that motions slip, or which remembered motion was blocked, if an explanation says so."""
         state = self.state
         if explanation.how == "slipped":
             self.state = replace(state, slipped=True, motions=())
@@ -220,21 +139,7 @@ class Tracker:
     # -- after a push or a turn ------------------------------------------------------------------
 
     def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodation:
-        """Explain and integrate an observation after a push or a turn of the held object `name`.
-
-        Parameters
-        ----------
-        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-        name : of the object in hand.
-        command : the push (east, north in squares) or turn (degrees), Utak's own frame.
-
-        Returns
-        -------
-        Accommodation
-            The chosen explanation, with where Utak is then (x, y) in squares and the outcome for the object, map frame
-            of its frame, and how each of the 160 fields is accounted for (predicted, explained or noise). `state` is
-            replaced.
-        """
+        """Explain and integrate an observation after a push or a turn of the held object `name`."""
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
         if isinstance(command, Turn) and state.beside_line:
@@ -249,17 +154,7 @@ class Tracker:
         return self._integrate(judged.explanation, ranges)
 
     def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
-        """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline.
-
-        Utak's place, the suspected squares and the hypotheses of the origin are brought up to date as well.
-
-        Parameters
-        ----------
-        name : of the object in hand.
-        chosen : the chosen explanation, applied already to the frame and the map.
-        command : the push or turn, Utak's own frame.
-        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-        """
+        """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""
         if chosen.instead is not None:
             self._declare(chosen.instead.possible, FREE)
             self.update_object(chosen.instead)
@@ -280,14 +175,7 @@ class Tracker:
     # -- the one place where an explanation is applied -------------------------------------------
 
     def _apply(self, chosen: Explanation) -> None:
-        """Believe in `state` what an explanation says of the frame and of earlier motions.
-
-        If either is new, all observations and held objects are mapped anew, and objects are forgotten that are neither
-        in hand nor were ever seen to move. Otherwise nothing changes but what was learnt of earlier motions; the place
-        of the newest observation is not yet believed.
-
-        chosen : the chosen explanation.
-        """
+        """Believe in `state` what an explanation says of the frame and of earlier motions."""
         state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
             state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
@@ -309,14 +197,7 @@ class Tracker:
         self.state = _remapped(replace(state, frame=chosen.frame), under)
 
     def _learn(self, judged: Judgement) -> None:
-        """Keep in `state` what was learnt while an explanation was chosen: searches, hypotheses, ends of the motion.
-
-        The other ends of the newest motion are stored in Utak's own frame, each with its probability after the
-        observation; they are not stored when the chosen explanation is in another frame.
-
-        judged : the chosen explanation, with the possible ends of the newest motion, the hypotheses if they were
-        weighed anew, and the number of searches spent.
-        """
+        """Keep in `state` what was learnt while an explanation was chosen: searches, hypotheses, ends of the motion."""
         state, chosen = self.state, judged.explanation
         if judged.hypotheses is not None:
             state = replace(state, hypotheses=judged.hypotheses)
@@ -330,12 +211,8 @@ class Tracker:
         self.state = replace(state, motions=motions)
 
     def _remember(self, command: Move | Push, name: str | None = None) -> None:
-        """Remember a straight motion in `state`, for it may have ended otherwise than believed.
-
-        The oldest is forgotten when more than MAX_MOTIONS (12) are remembered.
-
-        command : (east, north) in squares, Utak's own frame. name : of the object in hand; None for a walk.
-        """
+        """Remember a straight motion in `state`, for it may have ended otherwise than believed."""
+        # None for a walk.
         state = self.state
         motion = MotionHypothesis(
             len(state.observations), (command.east, command.north), state.hypotheses, in_hand=name
@@ -343,27 +220,12 @@ class Tracker:
         self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
     def _declare(self, patch: Patch, value: int) -> None:
-        """Settle the squares of a patch, map frame, as FREE or OCCUPIED; they are credited to the newest observation.
-
-        All squares on which an object in hand lies, or may lie, are FREE: the map holds what stays.
-        """
+        """Settle the squares of a patch, map frame, as FREE or OCCUPIED."""
+        # They are credited to the newest observation.
         self.state.occupancy.declare_patch(patch, value, len(self.state.observations) - 1)
 
     def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodation:
-        """Integrate an explained observation into the map, without what the held objects show of themselves.
-
-        Parameters
-        ----------
-        explanation : the chosen one, applied already; its place is where the observation was made, map frame.
-        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
-
-        Returns
-        -------
-        Accommodation
-            The explanation as given, and how each of the 160 fields was accounted for before the observation was
-            integrated: predicted, explained or noise, in the order of an impression. `state` is replaced, its map
-            updated in place.
-        """
+        """Integrate an explained observation into the map, without what the held objects show of themselves."""
         state, occupancy = self.state, self.state.occupancy
         samples, number = state.frame.samples(), len(state.observations)
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
@@ -387,28 +249,14 @@ class Tracker:
 
 
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
-    """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped.
-
-    Dropped are blocked and suspected squares, and the completions; they stay where the map is the same object. All else
-    of the state stays.
-
-    under : the map and the held objects in the new frame.
-    """
+    """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped."""
     if under.occupancy is not state.occupancy:
         state = replace(state, blocked_squares=frozenset(), suspected_squares=frozenset(), completions=None)
     return replace(state, occupancy=under.occupancy, held_objects=dict(under.held_objects))
 
 
 def _standing_place(state: TrackerState, place: Position) -> Position:
-    """Return the place to believe, (x, y) in squares, map frame: on the side of a grid line where nothing stands.
-
-    A motion that a contact stopped ends on a grid line, and the observation may have been made from either side. A
-    coordinate within 2e-6 squares of the middle of a square is moved onto it. Where something stands on all sides, the
-    place of the observation stays.
-
-    Of several free sides the place of the observation comes first, then the south-west one. state : its map, and the
-    squares that stopped Utak, are asked. place : where the observation was made, map frame.
-    """
+    """Return the place to believe, (x, y) in squares, map frame: on the side of a grid line where nothing stands."""
     sides, occupancy = [place, *observation_places(place)], state.occupancy
     squares = [(math.floor(x), math.floor(y)) for x, y in sides]
     free = (occupancy.state[occupancy.index(*s)] != OCCUPIED and s not in state.blocked_squares for s in squares)

@@ -34,68 +34,35 @@ SceneKey = tuple[int | bytes, ...]  # all that determines the samples of a scene
 
 
 class CompletionTask(NamedTuple):
-    """A scene to be drawn: a part of the map that is independent of all others.
+    """A scene to be drawn: a part of the map that is independent of all others."""
 
-    Arrays are [row, column], row 0 in the south.
-
-    Attributes
-    ----------
-    rows, columns : slice
-        Where it lies on the arrays of the map view.
-    ground : (h, w) int8
-        What is given of each square: FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE (also: squares of other
-        scenes).
-    first : (h, w) int8
-        Where a sample begins that was not drawn before: 1 where a square is more likely occupied than not.
-    counts : Counts
-        The counts of the squares to be drawn alone, with flat indices of the part: row * w + column.
-    """
-
-    rows: slice
+    rows: slice  # Where it lies on the arrays of the map view
     columns: slice
+    # What is given of each square: FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE (also: squares of other scenes)
     ground: OccupancyImage
+    # Where a sample begins that was not drawn before: 1 where a square is more likely occupied than not
     first: OccupancyImage
-    counts: Counts
+    counts: Counts  # The counts of the squares to be drawn alone, with flat indices of the part: row * w + column
 
     def told(self, view: MapView) -> SceneKey:
-        """Return a key of all that determines its samples, its place included: equal keys mean equal scenes.
-
-        view : the map view on whose arrays the scene lies.
-        """
+        """Return a key of all that determines its samples, its place included: equal keys mean equal scenes."""
         arrays = (self.ground, *self.counts)
         return view.west + self.columns.start, view.south + self.rows.start, *(array.tobytes() for array in arrays)
 
 
 class Completions(NamedTuple):
-    """Completions of a map: sampled maps that agree with all counts.
+    """Completions of a map: sampled maps that agree with all counts."""
 
-    Arrays are [row, column], row 0 in the south.
-
-    Attributes
-    ----------
-    west, south : int
-        The square at [0, 0], map frame.
-    ground : (rows, columns) int8
-        What was given of each square: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
-    images : (MAX_COMPLETIONS, rows, columns) int8
-        The completions: 1 where a square is occupied, 0 where it is free or was never seen.
-    scenes : mapping
-        Key of a scene -> its samples at the n squares drawn, (MAX_COMPLETIONS, n) int8, in raster order.
-    """
-
-    west: int
+    west: int  # The square at [0, 0], map frame
     south: int
-    ground: OccupancyImage
-    images: OccupancyImage
+    ground: OccupancyImage  # What was given of each square: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE
+    images: OccupancyImage  # The completions: 1 where a square is occupied, 0 where it is free or was never seen
+    # Key of a scene -> its samples at the n squares drawn, (MAX_COMPLETIONS, n) int8, in raster order
     scenes: Mapping[SceneKey, OccupancyImage]
 
     def at(self, x: int, y: int) -> Bools | None:
-        """Return which completions show a square (x, y) of the map frame occupied, (MAX_COMPLETIONS,) bool.
-
-        One value for each completion, in their order. x : column, y : row, in squares.
-
-        None where the square was never seen, or lies beyond the arrays.
-        """
+        """Return which completions show a square (x, y) of the map frame occupied, (MAX_COMPLETIONS,) bool."""
+        # None where the square was never seen, or lies beyond the arrays.
         row, column = y - self.south, x - self.west
         inside = 0 <= row < self.ground.shape[0] and 0 <= column < self.ground.shape[1]
         if not inside or self.ground[row, column] == UNSEEN_SQUARE:
@@ -104,14 +71,7 @@ class Completions(NamedTuple):
         return shown
 
     def over(self, scene: CompletionTask, view: MapView) -> "Completions":
-        """Return the part that lies where a scene of another map view lies, without samples of scenes.
-
-        The result has new arrays of the scene's shape, [row, column], row 0 in the south, with its own `west` and
-        `south` (map frame). Squares beyond these completions are UNSEEN_SQUARE, and 0 in all images.
-
-        scene : the scene; its shape is that of the result. view : the map view on whose arrays the scene lies, same map
-        frame.
-        """
+        """Return the part that lies where a scene of another map view lies, without samples of scenes."""
         south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
         ground: OccupancyImage = np.full(scene.ground.shape, UNSEEN_SQUARE, np.int8)
         images = np.zeros((len(self.images), *ground.shape), np.int8)
@@ -128,20 +88,7 @@ NO_COMPLETIONS = Completions(0, 0, np.zeros((0, 0), np.int8), np.zeros((MAX_COMP
 
 
 def given_squares(view: MapView) -> OccupancyImage:
-    """Return what is given when completions are drawn: settled squares, and the interior of what is surely alike.
-
-    That interior are squares that are probably occupied, or free, as are all others within INTERIOR_DEPTH squares.
-
-    Parameters
-    ----------
-    view : MapView
-        The map.
-
-    Returns
-    -------
-    (rows, columns) int8
-        On the arrays of the view: FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE.
-    """
+    """Return what is given when completions are drawn: settled squares, and the interior of what is surely alike."""
     ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN_SQUARE).astype(np.int8)
     drawn = ground == DRAWN
     ground[drawn & _interior(view.probability > INTERIOR_PROBABILITY, INTERIOR_DEPTH)] = OCCUPIED
@@ -150,21 +97,7 @@ def given_squares(view: MapView) -> OccupancyImage:
 
 
 def draw_completions(view: MapView, ground: OccupancyImage, before: Completions) -> Completions:
-    """Draw MAX_COMPLETIONS (12) completions that agree with the counts, and return them on the arrays of the view.
-
-    The result holds `images`, (12, rows, columns) int8, 1 where a square is occupied, what was given of each square,
-    and the samples of each scene (an independent part of the map), to be taken over next time. Draws are pseudo-random
-    of a fixed seed: the same arguments give the same result.
-
-    Parameters
-    ----------
-    view : MapView
-        The map.
-    ground : (rows, columns) int8
-        What is given of each square of the view, as `given_squares` returns it: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
-    before : Completions
-        Those of the impression before, in the same frame; scenes of which nothing new is known are taken from them.
-    """
+    """Draw MAX_COMPLETIONS (12) completions that agree with the counts, and return them on the arrays of the view."""
     images = np.repeat((ground == OCCUPIED).astype(np.int8)[None], MAX_COMPLETIONS, axis=0)
     drawn = {}
     for scene in scenes(view, ground):
@@ -176,14 +109,7 @@ def draw_completions(view: MapView, ground: OccupancyImage, before: Completions)
 
 
 def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
-    """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8, 1 where occupied.
-
-    The squares come in raster order, row by row from the south. Of twice as many samples the cheaper ones are kept, and
-    some may be repeated.
-
-    scene : the part of the map to be drawn. before : earlier completions at the place of the scene, of its shape; the
-    samples begin with them where they are known.
-    """
+    """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8, 1 where occupied."""
     open_ = scene.ground == DRAWN
     known = open_ & (before.ground != UNSEEN_SQUARE)
     sweeps, hot = NEXT_SCHEDULE if known.sum() > open_.sum() / 2 else FIRST_SCHEDULE
@@ -193,13 +119,7 @@ def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
 
 
 def _resample(costs: Floats) -> Longs:
-    """Return which samples are kept, (MAX_COMPLETIONS,) indices, in ascending order and with repetitions.
-
-    Cheaper ones are kept more often (systematic resampling).
-
-    costs : (n,), one for each sample, at least one: for edges, corners and wrong counts, as of
-    `geometry.counts.gibbs.costs`; the less the better.
-    """
+    """Return which samples are kept, (MAX_COMPLETIONS,) indices, in ascending order and with repetitions."""
     weight = np.cumsum(np.exp(-COST_WEIGHT * (costs - costs.min())))
     marks = (np.arange(MAX_COMPLETIONS) + 0.5) / MAX_COMPLETIONS
     kept: Longs = np.searchsorted(weight, marks * weight[-1])
@@ -207,20 +127,7 @@ def _resample(costs: Floats) -> Longs:
 
 
 def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
-    """Yield the independent scenes of a map; none where no square is to be drawn.
-
-    Each is a rectangle of the view's arrays (`rows`, `columns`), with what is given of its squares, where samples
-    begin, and the counts of the squares to be drawn, by flat index row * width + column of that rectangle. Rectangles
-    may overlap, the squares to be drawn do not. In the order of their labels, by first square from the south, as a
-    rule.
-
-    Parameters
-    ----------
-    view : MapView
-        The map.
-    ground : (rows, columns) int8
-        What is given of each square of the view, as `given_squares` returns it: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
-    """
+    """Yield the independent scenes of a map; none where no square is to be drawn."""
     open_ = ground == DRAWN
     counts = _counts_of_drawn(view.counts, ground)
     near = components(~_interior(~open_, 1))
@@ -245,14 +152,7 @@ def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
 
 
 def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
-    """Return what the fields that cover squares to be drawn say of these squares alone; other fields are left out.
-
-    Flat indices stay those of the ground: row * columns + column. One field for each that is left, in the order given:
-    `where` and `weight` (n, m), `weight` 0 at squares not to be drawn, and `low` and `high` (n,), the least and
-    greatest count of occupied squares among those to be drawn; occupied squares that are given are subtracted.
-
-    counts : of all fields, flat indices of the ground. ground : (rows, columns) int8, what is given of each square.
-    """
+    """Return what the fields that cover squares to be drawn say of these squares alone; other fields are left out."""
     under = ground.ravel()[counts.where]
     weight = np.where(under == DRAWN, counts.weight, np.int16(0))
     full = np.where(under == OCCUPIED, counts.weight, np.int16(0)).sum(1, dtype=np.int16)
@@ -261,12 +161,7 @@ def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
 
 
 def _joined_labels(near: Components, counts: Counts) -> Labels:
-    """Return the labels of parts, (rows, columns) int32; parts that one field covers together have one label.
-
-    Labels are 0 for no part, and not consecutive: of joined parts the lowest label stays. Row 0 in the south.
-
-    near : the parts before they are joined. counts : of the fields, with flat indices row * columns + column.
-    """
+    """Return the labels of parts, (rows, columns) int32; parts that one field covers together have one label."""
     under = near.labels.ravel()[counts.where]
     used = counts.weight > 0
     one = np.where(used, under, near.number + 1).min(1, initial=near.number + 1)
@@ -285,12 +180,8 @@ def _joined_labels(near: Components, counts: Counts) -> Labels:
 
 
 def _interior(mask: Bools, depth: int) -> Bools:
-    """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it: a mask like it.
-
-    (rows, columns) bool, a new array. Beyond its edge the mask is taken to go on as at the edge.
-
-    mask : (rows, columns) bool. depth : in squares; diagonal neighbours belong to it.
-    """
+    """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it."""
+    # A mask like it.
     for axis in (0, 1):
         framed = np.pad(mask, [(depth, depth) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
         parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * depth + 1)]

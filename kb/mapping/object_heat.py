@@ -45,49 +45,19 @@ WALL_ELONGATION = 10  # squares seen for each open side, from which on what goes
 
 
 class CompletionSummary(NamedTuple):
-    """Completions of the map, and what they have in common.
+    """Completions of the map, and what they have in common."""
 
-    Attributes
-    ----------
-    pictures : Completions
-        The completions; all arrays are on theirs, [row, column] with row 0 in the south.
-    """
-
-    pictures: Completions
+    pictures: Completions  # The completions; all arrays are on theirs, [row, column] with row 0 in the south
 
     def probability(self, by_counts: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return the probability that each square is occupied.
-
-        Parameters
-        ----------
-        by_counts : (rows, columns) float32
-            The probability by counts alone, 0 to 1, on the arrays of the completions. It weighs as much as one more
-            completion.
-
-        Returns
-        -------
-        (rows, columns) float32
-            From 0 to 1. Where nothing was to be drawn it is `by_counts`.
-        """
+        """Return the probability that each square is occupied."""
         ground, images = self.pictures.ground, self.pictures.images
         shares = (images.sum(0, dtype=np.float32) + by_counts) / np.float32(len(images) + 1)
         answer: NDArray[np.float32] = np.where(ground == DRAWN, shares, by_counts)
         return answer
 
     def likely(self, shape: str) -> Floats:
-        """Return the probability that each square belongs to an isolated object of a shape class.
-
-        Parameters
-        ----------
-        shape : str
-            square, disc, brick, rectangle; any other word stands for all other shapes.
-
-        Returns
-        -------
-        (rows, columns) float64
-            From 0 to 1; higher where more completions show a part of that shape, or a part that may be the seen end of
-            one.
-        """
+        """Return the probability that each square belongs to an isolated object of a shape class."""
         ground, images = self.pictures.ground, self.pictures.images
         heat = np.zeros(ground.shape)
         for image in images:
@@ -102,32 +72,13 @@ NO_COMPLETION_SUMMARY = CompletionSummary(NO_COMPLETIONS)
 
 
 def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETION_SUMMARY) -> CompletionSummary:
-    """Draw completions of a map, and return them with what they have in common.
-
-    The result holds 12 sampled maps that agree with all counts, (12, rows, columns) int8, 1 where a square is occupied,
-    on the arrays of the view. Asked by its methods it gives the probability that each square is occupied, or belongs to
-    an object of a shape.
-
-    Parameters
-    ----------
-    view : MapView
-        The map.
-    before : CompletionSummary
-        Those of the impression before, in the same frame; none by default.
-    """
+    """Draw completions of a map, and return them with what they have in common."""
     return CompletionSummary(draw_completions(view, given_squares(view), before.pictures))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:
-    """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 (not at all) to 1.
-
-    float64, in the order of `found`. For brick and rectangle slenderness counts against it, for square and disc that it
-    is longer than wide.
-
-    found : the n edge-connected occupied parts of a completion, with `area` in squares, `spread` (sum of the principal
-        moments by squared area) and `lengthy` (their difference by their sum).
-    shape : square, disc, brick, rectangle; any other word stands for all other shapes.
-    """
+    """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 (not at all) to 1."""
+    # For brick and rectangle slenderness counts against it, for square and disc that it is longer than wide.
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
     rectangular = (ratio + 1 / ratio) / 12
     longer = found.spread - rectangular
@@ -149,29 +100,13 @@ def likeness(found: Blobs, shape: str) -> Floats:
 
 
 def end_probability(found: Blobs) -> Floats:
-    """Return how likely each of n parts ends where its squares border on unseen ones, (n,) from 0 to 1.
-
-    It is 1 for a part that is seen all around, less by a factor for each side of a square beyond which nothing was
-    seen, and 0 for one that is long enough to be a wall.
-
-    float64, in the order of `found`: 0.7 to the power of the number of such sides.
-
-    found : the n edge-connected occupied parts of a completion, with `area` in squares and `outward`, the number of
-        sides of squares beyond which nothing was seen.
-    """
+    """Return how likely each of n parts ends where its squares border on unseen ones, (n,) from 0 to 1."""
     wall = (found.outward > 0) & (found.area >= WALL_ELONGATION * found.outward)
     return np.where(wall, 0.0, END_PROBABILITY**found.outward)
 
 
 def part_seen_probability(found: Blobs) -> Floats:
-    """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1.
-
-    It is 0 for a part that goes on unseen along one side of a square at most, along too many, or that has too great an
-    area for those sides; else the higher the more squares of it are seen. float64, in the order of `found`.
-
-    found : the n edge-connected occupied parts of a completion, with `area` in squares and `outward`, the number of
-        sides of squares beyond which nothing was seen.
-    """
+    """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1."""
     compact = found.area <= MAX_DEPTH_RATIO * found.outward**2
     may_be = (found.outward > 1) & (found.outward <= MAX_OPEN_SIDES) & compact
     answer: Floats = np.where(may_be, OBJECT_PROBABILITY * chance_by_seen_squares(found.area), 0.0)
@@ -179,43 +114,24 @@ def part_seen_probability(found: Blobs) -> Floats:
 
 
 def chance_by_seen_squares(squares: Longs) -> Floats:
-    """Return how likely something that goes on unseen, and may be an object, is the one looked for.
-
-    Parameters
-    ----------
-    squares : (n,) int64
-        How many of its squares are seen: a count.
-
-    Returns
-    -------
-    (n,) float64
-        From 0 to 1; the more squares are seen the likelier.
-    """
+    """Return how likely something that goes on unseen, and may be an object, is the one looked for."""
     parts = SEEN_PART_PROBABILITY
     answer: Floats = np.select([squares >= least for least, _ in parts], [chance for _, chance in parts])
     return answer
 
 
 def _not_slender(ratio: Floats) -> Floats:
-    """Return how well a ratio agrees with a brick: 1 up to 4, less beyond, but at least MIN_LIKENESS (0.1).
-
-    ratio : length divided by width of each of n parts, (n,) float64, at least 1; the result is like it.
-    """
+    """Return how well a ratio agrees with a brick: 1 up to 4, less beyond, but at least MIN_LIKENESS (0.1)."""
     return np.maximum(_agreement_at_most(ratio, *BRICK_RATIO), MIN_LIKENESS)
 
 
 def _agreement_at_most(value: Floats, limit: float, tolerance: float) -> Floats:
-    """Return 1 for values up to a limit, and less, down to 0, the further a value is above it; an array like `value`.
-
-    value, limit, tolerance : of one unit. tolerance : the excess over the limit at which the result is 1 / e.
-    """
+    """Return 1 for values up to a limit, and less, down to 0, the further a value is above it."""
+    # An array like `value`.
     return _agreement(np.maximum(value - limit, 0.0), tolerance)
 
 
 def _agreement(error: Floats, tolerance: Floats | float) -> Floats:
-    """Return exp(-(error / tolerance)^2): 1 for no error, 1 / e for an error of `tolerance`; an array like `error`.
-
-    error, tolerance : of one unit; a tolerance above 0, one for all or an array like `error`.
-    """
+    """Return exp(-(error / tolerance)^2): 1 for no error, 1 / e for an error of `tolerance`; an array like `error`."""
     answer: Floats = np.exp(-((error / tolerance) ** 2))
     return answer

@@ -37,55 +37,29 @@ NO_COUNTS = Counts(
 
 
 class MapView(NamedTuple):
-    """A snapshot of the part of the map that was seen, with a margin of unseen squares.
+    """A snapshot of the part of the map that was seen, with a margin of unseen squares."""
 
-    Arrays are [row, column], row 0 in the south, column 0 in the west.
-
-    Attributes
-    ----------
-    west, south : int
-        The square at [0, 0], map frame.
-    probability : (rows, columns) float32
-        That a square is occupied, 0 to 1; 0.5 where nothing is known.
-    state : (rows, columns) int8
-        OPEN, FREE or OCCUPIED: what the counts settle.
-    seen : (rows, columns) bool
-        Squares that were ever under the retina.
-    settled_by : (rows, columns) int16
-        The number of the impression that settled a square, or -1.
-    counts : Counts
-        The fields that still say something, with flat indices of this view: row * columns + column.
-    sure : bool
-        Whether what is settled is beyond doubt: not while several frames may be right, or impressions contradict each
-        other.
-    by_counts : (rows, columns) float32 or None
-        That a square is occupied, by counts alone, where `probability` draws on completions, too; else None.
-    """
-
-    west: int
+    west: int  # The square at [0, 0], map frame
     south: int
-    probability: NDArray[np.float32]
-    state: NDArray[np.int8]
-    seen: Bools
-    settled_by: NDArray[np.int16]
+    probability: NDArray[np.float32]  # That a square is occupied, 0 to 1; 0.5 where nothing is known.
+    state: NDArray[np.int8]  # OPEN, FREE or OCCUPIED: what the counts settle
+    seen: Bools  # Squares that were ever under the retina
+    settled_by: NDArray[np.int16]  # The number of the impression that settled a square, or -1
+    # The fields that still say something, with flat indices of this view: row * columns + column
     counts: Counts = NO_COUNTS
+    # Whether what is settled is beyond doubt: not while several frames may be right, or impressions contradict each
+    # other
     sure: bool = True
+    # That a square is occupied, by counts alone, where `probability` draws on completions, too; else None
     by_counts: NDArray[np.float32] | None = None
 
     def locate(self, x: float, y: float) -> tuple[int, int]:
-        """Return the index [row, column] of the square in which a point (x, y) of the map frame lies.
-
-        It is outside of the arrays, possibly negative, for a point outside of the view. x, y : in squares.
-        """
+        """Return the index [row, column] of the square in which a point (x, y) of the map frame lies."""
+        # It is outside of the arrays, possibly negative, for a point outside of the view.
         return math.floor(y) - self.south, math.floor(x) - self.west
 
     def part(self, rows: slice, columns: slice) -> "MapView":
-        """Return the view of some rows and columns alone, without the counts; its arrays are shared with this one.
-
-        Its `west` and `south` are the square of the map frame at its own [0, 0].
-
-        rows, columns : with a start that is not negative. `by_counts` stays that of the whole view.
-        """
+        """Return the view of some rows and columns alone, without the counts; its arrays are shared with this one."""
         return self._replace(
             west=self.west + columns.start,
             south=self.south + rows.start,
@@ -98,23 +72,7 @@ class MapView(NamedTuple):
 
 
 class OccupancyMap:
-    """The map, which grows. Arrays are [row, column]; square (x, y) of the map frame lies at [y - south, x - west].
-
-    Row 0 is in the south. A flat index is row * columns + column, and changes when the map grows.
-
-    Attributes
-    ----------
-    west, south : int
-        The square at [0, 0], map frame.
-    state : (rows, columns) int8
-        OPEN (-1), FREE (0) or OCCUPIED (1): what the counts settle.
-    seen : (rows, columns) bool
-        Squares that were ever under the retina.
-    settled_by : (rows, columns) int16
-        The number of the impression that settled a square, or -1.
-    overruled : int
-        How many fields of impressions contradicted what was settled before, in all.
-    """
+    """The map, which grows. Arrays are [row, column]; square (x, y) of the map frame lies at [y - south, x - west]."""
 
     def __init__(self) -> None:
         """Begin with an empty map about the square (0, 0) in which the robot woke: all is open and unseen."""
@@ -134,17 +92,11 @@ class OccupancyMap:
 
     @property
     def logit(self) -> Logits:
-        """The log odds (natural logarithm) that an open square is occupied, (rows, columns) float32.
-
-        It is 0 where nothing was seen; at settled squares it means nothing.
-        """
+        """The log odds (natural logarithm) that an open square is occupied, (rows, columns) float32."""
         return self._odds.logit
 
     def copy(self) -> "OccupancyMap":
-        """Return an independent copy, to which more impressions can be added; neither changes the other.
-
-        Same place, size and contents: flat indices of the one are those of the other, until one of them grows.
-        """
+        """Return an independent copy, to which more impressions can be added; neither changes the other."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
         other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
@@ -152,26 +104,7 @@ class OccupancyMap:
         return other
 
     def view(self, places: Iterable[XY] = (), margin: int = 2) -> MapView:
-        """Return a snapshot of the part of the map that was seen, and of all that lies in sight of some places.
-
-        It holds `west` and `south` (the square of the map frame at [0, 0]) and arrays [row, column], row 0 in the
-        south, copied from the map: the probability (0 to 1, by counts alone) that each square is occupied, what is
-        settled of it (OPEN, FREE or OCCUPIED), whether it was seen, and the impression that settled it (-1 for none);
-        with them the fields that still say something, by flat index row * columns + column of these arrays. `sure` is
-        True and `by_counts` None, whatever is known: others set them. Squares that fields only skipped count as seen.
-
-        Parameters
-        ----------
-        places : iterable of (x, y)
-            The places, in squares, map frame; the map grows to hold what is in sight of them (24 squares to each side).
-        margin : int
-            Squares around that part which are included, too, as far as the map goes.
-
-        Raises
-        ------
-        IndexError
-            No square was seen yet.
-        """
+        """Return a snapshot of the part of the map that was seen, and of all that lies in sight of some places."""
         squares = [(math.floor(x), math.floor(y)) for x, y in places]
         for square in squares:
             self.make_room(*square)
@@ -191,31 +124,18 @@ class OccupancyMap:
         return MapView(west, south, probability, state, seen, self.settled_by[part].copy(), counts)
 
     def _counts(self, top: int, left: int, columns: int) -> Counts:
-        """Return the fields that still say something, with flat indices of a part of the map.
-
-        The index of a square is row * columns + column of the part. One row for each field, (n, 16), its squares and
-        how often each counts (0 is padding), and the least and greatest count of occupied squares among them. Arrays
-        but the indices are shared with the map.
-
-        top, left : row and column of the map at which the part begins; top is its south. columns : the width of the
-        part, in squares.
-        """
+        """Return the fields that still say something, with flat indices of a part of the map."""
         rows, places = np.divmod(self._where, self.state.shape[1])
         where = np.where(self._weight > 0, (rows - top) * columns + places - left, 0).astype(np.int32)
         return Counts(where, self._weight, self._low, self._high)
 
     def index(self, x: int, y: int) -> tuple[int, int]:
-        """Return the index [row, column] of a square (x, y) of the map frame.
-
-        It is outside of the arrays, possibly negative, for a square outside of the map: see `make_room`.
-        """
+        """Return the index [row, column] of a square (x, y) of the map frame."""
+        # It is outside of the arrays, possibly negative, for a square outside of the map: see `make_room`.
         return y - self.south, x - self.west
 
     def squares(self, west: int, south: int, mask: Bools) -> Bools:
-        """Return a small mask on the arrays of the map: (rows, columns) bool, like `state`.
-
-        west, south : the square of the map frame at [0, 0] of `mask`. The mask must lie within the map.
-        """
+        """Return a small mask on the arrays of the map: (rows, columns) bool, like `state`."""
         whole = np.zeros(self.state.shape, np.bool_)
         row, column = self.index(west, south)
         whole[row : row + mask.shape[0], column : column + mask.shape[1]] = mask
@@ -224,44 +144,15 @@ class OccupancyMap:
     # -- impressions ---------------------------------------------------------------------------------
 
     def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Bools:
-        """Return which fields contradict the map if the robot stands on a square; the map grows to hold all in sight.
-
-        Parameters
-        ----------
-        samples : Samples
-            The squares that each field samples, relative to the robot's square.
-        ranges : (160, 2) int16
-            The least and the greatest count of occupied squares under each field.
-        x, y : int
-            The robot's square, map frame.
-
-        Returns
-        -------
-        (160,) bool
-            True for fields that cannot show what they show if all that is settled is right.
-        """
+        """Return which fields contradict the map if the robot stands on a square."""
+        # The map grows to hold all in sight.
         self.make_room(x, y)
         low, wrong = ranges[:, 0] - samples.slack, np.zeros(len(ranges), np.bool_)
         misfits(self.state.ravel(), self._under(samples, x, y), samples.weight, low, ranges[:, 1].copy(), wrong)
         return wrong
 
     def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, whether: bool = False) -> int:
-        """Return how many fields, of an impression and of all before, cannot be right if it was received on a square.
-
-        The map grows to hold all in sight; nothing is settled. 0 means that nothing contradicts.
-
-        Parameters
-        ----------
-        samples : Samples
-            The squares that each field samples, relative to the robot's square.
-        ranges : (160, 2) int16
-            The least and the greatest count of occupied squares under each field.
-        x, y : int
-            The robot's square, map frame.
-        whether : bool
-            Whether to leave out the fields of impressions before if some field of this one cannot be right: then the
-            number may be too small, but is not 0. Otherwise all are counted.
-        """
+        """Return how many fields, of an impression and all before, cannot be right if it was received on a square."""
         new = int(self.misfits(samples, ranges, x, y).sum())
         if new and whether:
             return new
@@ -273,22 +164,7 @@ class OccupancyMap:
         return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
     def observe(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
-        """Add one impression to the map.
-
-        Where it contradicts what was settled, the new impression counts: what was settled under the contradicting
-        fields, and the fields that led to it, are withdrawn. The same impression from the same square adds nothing.
-
-        Parameters
-        ----------
-        samples : Samples
-            The squares that each field samples, relative to the robot's square.
-        ranges : (160, 2) int16
-            The least and the greatest count of occupied squares under each field.
-        x, y : int
-            The square on which it was received, map frame.
-        number : int
-            The number of the impression; squares that it settles are credited to it.
-        """
+        """Add one impression to the map."""
         arrays = (samples.columns, samples.rows, samples.weight, ranges)
         seen_here: ObservationKey = (x, y, *(array.tobytes() for array in arrays))
         if seen_here in self._observations:
@@ -310,10 +186,7 @@ class OccupancyMap:
         self._observations.add(seen_here)
 
     def withdraw(self, squares: Ints) -> None:
-        """Forget what was settled of some squares, and all fields that cover one of them; the squares are open then.
-
-        squares : (n,) int32, flat indices on the map: row * columns + column.
-        """
+        """Forget what was settled of some squares, and all fields that cover one of them; the squares are open then."""
         self._observations.clear()
         doubtful = np.zeros(self.state.size, np.bool_)
         doubtful[squares] = True
@@ -324,17 +197,7 @@ class OccupancyMap:
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
 
     def stand(self, x: int, y: int, number: int) -> None:
-        """Settle the square on which the robot woke as free, unless it was settled before: its own image hides it.
-
-        The end of a motion proves no square free: the motion may have been stopped on the grid line before a wall.
-
-        Parameters
-        ----------
-        x, y : int
-            The square, map frame; the map must have room for it.
-        number : int
-            The number of the impression received there.
-        """
+        """Settle the square on which the robot woke as free, unless it was settled before: its own image hides it."""
         row, column = self.index(x, y)
         if self.state[row, column] == OPEN:
             self.state[row, column], self.settled_by[row, column] = FREE, number
@@ -342,39 +205,19 @@ class OccupancyMap:
         self.seen[row, column] = True
 
     def declare(self, mask: Bools, value: int, number: int) -> None:
-        """Settle squares by other knowledge than counts, for example the place of an object that was pushed.
-
-        What was settled of them, and all fields that cover one of them, are forgotten.
-
-        Parameters
-        ----------
-        mask : (rows, columns) bool
-            The squares, on the arrays of the map.
-        value : int
-            FREE, OCCUPIED or OPEN.
-        number : int
-            The number of the impression to which this is credited.
-        """
+        """Settle squares by other knowledge than counts, for example the place of an object that was pushed."""
         self.withdraw(np.flatnonzero(mask).astype(np.int32))
         self.state[mask] = value
         self.settled_by[mask] = number
 
     def declare_patch(self, patch: tuple[int, int, Bools], value: int, number: int) -> None:
-        """Settle the squares of a patch by other knowledge than counts; see `declare`.
-
-        patch : west, south, the square of the map frame at [0, 0] of the mask, and the mask; it lies within the map.
-        """
+        """Settle the squares of a patch by other knowledge than counts; see `declare`."""
         self.declare(self.squares(*patch), value, number)
 
     # -- solving ---------------------------------------------------------------------------------
 
     def window(self, west: int, south: int, shape: tuple[int, ...]) -> NDArray[np.int8]:
-        """Return the states of a part of the map, (rows, columns) int8, row 0 in the south; a copy.
-
-        Squares beyond the map are OPEN.
-
-        west, south : the square of the map frame at [0, 0]. shape : (rows, columns) of the part.
-        """
+        """Return the states of a part of the map, (rows, columns) int8, row 0 in the south; a copy."""
         row, column = self.index(west, south)
         part = np.full(shape, OPEN, np.int8)
         rows = slice(max(-row, 0), max(len(self.state) - row, 0))
@@ -384,17 +227,7 @@ class OccupancyMap:
         return part
 
     def supposing(self, squares: Iterable[Square]) -> "OccupancyMap":
-        """Return the map as if those of some squares that are more likely free than occupied were free.
-
-        Those are open squares of log odds below 0; all others stay as they are, and squares beyond the map are left
-        out. Same arrays and indices as this map, of which only `state` is a copy. The result is for reading only: it
-        shares arrays with this map.
-
-        Parameters
-        ----------
-        squares : iterable of (x, y)
-            The squares, map frame.
-        """
+        """Return the map as if those of some squares that are more likely free than occupied were free."""
         other = copy(self)
         other.state = self.state.copy()
         for x, y in squares:
@@ -406,18 +239,11 @@ class OccupancyMap:
 
     @property
     def _fields(self) -> tuple[Ints, NDArray[np.int16], NDArray[np.int16], NDArray[np.int16]]:
-        """The fields that still say something, as the kernels take them: where, weight, low, high.
-
-        where : (n, 16) int32, flat indices of the squares under each of n fields. weight : (n, 16) int16, how often
-        each of them counts; 0 is padding. low, high : (n,) int16, the least and the greatest count of occupied squares.
-        """
+        """The fields that still say something, as the kernels take them: where, weight, low, high."""
         return self._where, self._weight, self._low, self._high
 
     def _informative(self) -> Bools:
-        """Return which fields still say something of open squares, (n,) bool, in the order of the fields.
-
-        A field says nothing when all its squares are settled, or when any number of its open squares may be occupied.
-        """
+        """Return which fields still say something of open squares, (n,) bool, in the order of the fields."""
         _, weight, low, high = remaining_counts(self.state.ravel(), *self._fields)
         return (weight > 0) & ((low > 0) | (high < weight))
 
@@ -429,24 +255,13 @@ class OccupancyMap:
     # -- growth ----------------------------------------------------------------------------
 
     def _under(self, samples: Samples, x: int, y: int) -> Ints:
-        """Return the flat indices on the map of the squares sampled from square (x, y), (160, 16) int32.
-
-        Row n belongs to field n; padding has the index of the square (x, y) itself.
-
-        samples : the squares that each field samples, relative to (x, y). x, y : map frame. The map must have room for
-        all in sight of it.
-        """
+        """Return the flat indices on the map of the squares sampled from square (x, y), (160, 16) int32."""
         columns = self.state.shape[1]
         answer: Ints = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
         return answer
 
     def make_room(self, x: int, y: int) -> None:
-        """Grow the arrays until all that can be seen from square (x, y) of the map frame fits in.
-
-        That is 24 squares to each side; what is added is 40 squares more than needed. `west` and `south` change, and
-        with them all indices, when rows or columns are added there; flat indices also when columns are added in the
-        east. Nothing changes where there is room.
-        """
+        """Grow the arrays until all that can be seen from square (x, y) of the map frame fits in."""
         row, column = self.index(x, y)
         rows, columns = self.state.shape
         south, west = max(0, SIGHT_RANGE - row), max(0, SIGHT_RANGE - column)
@@ -455,11 +270,7 @@ class OccupancyMap:
             self._grow(*(n + GROWTH_MARGIN if n else 0 for n in (south, north, west, east)))
 
     def _grow(self, south: int, north: int, west: int, east: int) -> None:
-        """Add so many rows (south, north) and columns (west, east) of open, unseen squares on each side.
-
-        `west`, `south` and the flat indices of the fields are brought up to date; indices kept elsewhere are wrong
-        then.
-        """
+        """Add so many rows (south, north) and columns (west, east) of open, unseen squares on each side."""
         rows, columns = np.divmod(self._where, self.state.shape[1])
         widths = ((south, north), (west, east))
         self.state = np.pad(self.state, widths, constant_values=OPEN)
@@ -471,18 +282,7 @@ class OccupancyMap:
 
 
 def _fill_gaps(probability: NDArray[np.float32], seen: Bools) -> None:
-    """Mark squares that no field happened to sample, though three edge neighbours were seen, as seen; in place.
-
-    Their probability is the mean of those neighbours. In a turned frame the retina skips some squares, but never two
-    adjacent ones.
-
-    Parameters
-    ----------
-    probability : (rows, columns) float32
-        That each square is occupied, 0 to 1; changed at the gaps.
-    seen : (rows, columns) bool
-        Which squares were seen; True at the gaps afterwards.
-    """
+    """Mark squares that no field happened to sample, though three edge neighbours were seen, as seen; in place."""
     known = np.pad(seen, 1).astype(np.float32)
     likely = np.pad(np.where(seen, probability, 0), 1)
     count, total = (a[:-2, 1:-1] + a[2:, 1:-1] + a[1:-1, :-2] + a[1:-1, 2:] for a in (known, likely))

@@ -23,26 +23,12 @@ Logits = NDArray[np.float32]
 
 
 class Fields(NamedTuple):
-    """Fields, and the states of squares when the odds were fitted to them; as geometry.counts.settle takes them.
+    """Fields, and the states of squares when the odds were fitted to them; as geometry.counts.settle takes them."""
 
-    Flat indices are row * columns + column on the arrays of the map.
-
-    Attributes
-    ----------
-    state : (size,) int8
-        What was settled, by flat index of the square: OPEN (-1), FREE (0) or OCCUPIED (1).
-    where : (n, 16) int32
-        Flat indices of the squares under each field.
-    weight : (n, 16) int16
-        How often each of them counts; 0 is padding.
-    low, high : (n,) int16
-        The least and the greatest count of occupied squares.
-    """
-
-    state: NDArray[np.int8]
-    where: Ints
-    weight: NDArray[np.int16]
-    low: NDArray[np.int16]
+    state: NDArray[np.int8]  # What was settled, by flat index of the square: OPEN (-1), FREE (0) or OCCUPIED (1)
+    where: Ints  # Flat indices of the squares under each field
+    weight: NDArray[np.int16]  # How often each of them counts; 0 is padding
+    low: NDArray[np.int16]  # The least and the greatest count of occupied squares
     high: NDArray[np.int16]
 
 
@@ -59,40 +45,21 @@ class Grown(NamedTuple):
 
 
 class Odds:
-    """The log odds (natural logarithm) that squares are occupied, after some changes; computed when they are asked for.
-
-    Arrays are those of the map: [row, column], row 0 in the south.
-
-    Parameters
-    ----------
-    logit : (rows, columns) float32
-        The log odds before the changes.
-    changes : tuple of Fields, Forgotten or Grown
-        The changes, oldest first.
-    """
+    """The log odds that squares are occupied, after some changes; computed when they are asked for."""
 
     def __init__(self, logit: Logits, changes: tuple[Fields | Forgotten | Grown, ...] = ()) -> None:
         """Begin with nothing computed; `logit` is not changed."""
         self._before, self._changes = logit, changes
 
     def after(self, change: Fields | Forgotten | Grown) -> "Odds":
-        """Return the log odds after one more change, to be computed when they are asked for; these stay as they are.
-
-        Asked for `logit` the result gives (rows, columns) float32 on the arrays of the map after the change, natural
-        logarithm: above 0 where a square is more likely occupied than free.
-
-        change : fields to which open squares are fitted, squares of which all is forgotten, or rows and columns added.
-        """
+        """Return the log odds after one more change, to be computed when they are asked for; these stay as they are."""
         if "logit" in self.__dict__:
             return Odds(self.logit, (change,))
         return Odds(self._before, (*self._changes, change))
 
     @cached_property
     def logit(self) -> Logits:
-        """The log odds (natural logarithm), (rows, columns) float32, within -6 to 6; 0 where nothing was seen.
-
-        At settled squares they mean nothing.
-        """
+        """The log odds (natural logarithm), (rows, columns) float32, within -6 to 6; 0 where nothing was seen."""
         logit = self._before.copy()
         for change in self._changes:
             if isinstance(change, Grown):
@@ -105,11 +72,7 @@ class Odds:
 
 
 def _fit(logits: Logits, fields: Fields) -> None:
-    """Fit the odds of open squares to the mean counts of the fields, in place.
-
-    logits : (rows, columns) float32, log odds; changed at the open squares under the fields. fields : flat indices of
-    it.
-    """
+    """Fit the odds of open squares to the mean counts of the fields, in place."""
     where, weights = fields.where, fields.weight
     open_, weight, low, high = remaining_counts(*fields)
     if not open_.any():
@@ -131,10 +94,7 @@ def _fit(logits: Logits, fields: Fields) -> None:
 
 
 def _logit(p: Floats) -> Floats:
-    """Return the log odds (natural logarithm) of probabilities, clipped to 0.002 and 0.998; an array like `p`.
-
-    p : 0 to 1. The result is about -6.2 to 6.2, and 0 for 0.5.
-    """
+    """Return the log odds (natural logarithm) of probabilities, clipped to 0.002 and 0.998; an array like `p`."""
     p = np.clip(p, MIN_TARGET_SHARE, MAX_TARGET_SHARE)
     answer: Floats = np.log(p / (1 - p))
     return answer

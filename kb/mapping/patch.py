@@ -12,19 +12,11 @@ from kb.mapping.occupancy import MapView
 
 
 class Patch(NamedTuple):
-    """A set of squares of the map frame.
+    """A set of squares of the map frame."""
 
-    Attributes
-    ----------
-    west, south : int
-        The square at [0, 0] of the mask, map frame.
-    mask : (rows, columns) bool
-        Which squares belong to it; row 0 in the south, column 0 in the west.
-    """
-
-    west: int
+    west: int  # The square at [0, 0] of the mask, map frame
     south: int
-    mask: Bools
+    mask: Bools  # Which squares belong to it; row 0 in the south, column 0 in the west
 
     @property
     def centre(self) -> XY:
@@ -39,33 +31,14 @@ class Patch(NamedTuple):
 
 
 def patch_of(mask: Bools, view: MapView) -> Patch:
-    """Return the patch of a mask on the view's arrays, cut to its extent; the mask is copied.
-
-    It holds `west` and `south`, the square of the map frame at [0, 0], and the cut mask, row 0 in the south.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool
-        At least one square; none raises IndexError. Row 0 in the south.
-    view : MapView
-        The view on whose arrays the mask is.
-    """
+    """Return the patch of a mask on the view's arrays, cut to its extent; the mask is copied."""
     rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
     part = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     return Patch(view.west + int(columns[0]), view.south + int(rows[0]), part.copy())
 
 
 def patch_of_polygon(polygon: Any) -> Patch:
-    """Return the patch of the squares whose open interior meets a polygon; its mask spans the bounding box.
-
-    It holds `west` and `south`, the square of the map frame at [0, 0], and the mask (rows, columns) bool, row 0 in the
-    south. A square that the polygon only touches does not belong to it.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon or MultiPolygon
-        In squares, map frame; not empty.
-    """
+    """Return the patch of the squares whose open interior meets a polygon; its mask spans the bounding box."""
     x0, y0, x1, y1 = polygon.bounds
     west, south = int(np.floor(x0)), int(np.floor(y0))
     placed = shapely.transform(polygon, lambda points: points - np.array([west, south]))
@@ -73,13 +46,7 @@ def patch_of_polygon(polygon: Any) -> Patch:
 
 
 def patch_of_squares(squares_: Iterable[Square]) -> Patch:
-    """Return the patch of some squares (x, y) of the map frame, cut to their extent.
-
-    It holds `west` and `south`, the least column and row, map frame, and the mask (rows, columns) bool, row 0 in the
-    south. Repeated squares count once.
-
-    squares_ : at least one; none raises ValueError.
-    """
+    """Return the patch of some squares (x, y) of the map frame, cut to their extent."""
     columns, rows = np.array(sorted(squares_)).T
     west, south = int(columns.min()), int(rows.min())
     mask = np.zeros((int(rows.max()) + 1 - south, int(columns.max()) + 1 - west), np.bool_)

@@ -45,117 +45,64 @@ EMPTY_PATCH = Patch(0, 0, np.zeros((1, 1), np.bool_))  # no square
 
 @dataclass(frozen=True)
 class HeldObject:
-    """An object that the robot holds, or has held.
+    """An object that the robot holds, or has held."""
 
-    Attributes
-    ----------
-    name : str
-        The name of its node in the world model.
-    polygon : shapely Polygon
-        Its believed outline, where it is believed to lie now; map frame, in squares.
-    first : shapely Polygon
-        Where it lay when it was first held; map frame.
-    slack : float
-        How far the true outline may lie from the believed one, in squares.
-    full, empty : frozenset of (x, y)
-        Squares of the map frame that the tolerance `slack` leaves open, but that were seen to be occupied, or not,
-        since it last moved.
-    turned : float
-        Degrees by which it was turned since it was first held, counter-clockwise positive.
-    shape : mapping of str to int
-        Shape class -> confidence in percent, from before it was grasped; {} until it is measured anew, if it was found
-        to be larger than it seemed.
-    colour : str or None
-        The colour felt on it before it was grasped; None when it was not felt.
-    support : tuple of int
-        Numbers of the impressions, from 0, that support it; every impression of it is added.
-    proven : bool
-        Whether it was seen to move.
-    whole : bool
-        Whether it was seen to move as one thing: a motion that did not end early left no field unexplained.
-    stuck : int
-        How many of the last motions in a row did not move it.
-    since : int
-        How many impressions had been received when it was first held.
-    astray : float
-        Additional tolerance in squares: where the robot stands in its square, and so the centre of its turns, is not
-        known exactly.
-    unexplained : int
-        How many fields the worst explained of its motions left unexplained.
-    skewed : bool
-        Whether its outline was measured in another frame, and could not be measured in this one.
-    thwarted : int
-        How many motions in all did not move it, though it had moved before and nothing is suspected to have stopped it.
-    inexact : bool
-        Whether its place is known only roughly, even where its corners seem to lie on the grid.
-    insets : SubcellExtent or None
-        How far its sides may lie within the squares in which it was seen, as it lay when first held; None when they
-        are not parallel to the grid.
-    stopped : bool
-        Whether one of its motions ended early, or beside its predicted place.
-    seen_on : Patch or None
-        The squares on which it was seen before it was grasped, map frame; None when these are not known any more, for
-        the frame is another one.
-    """
-
-    name: str
-    polygon: Any
-    first: Any
-    slack: float = 0.0
+    name: str  # The name of its node in the world model
+    polygon: Any  # Its believed outline, where it is believed to lie now; map frame, in squares
+    first: Any  # Where it lay when it was first held; map frame
+    slack: float = 0.0  # How far the true outline may lie from the believed one, in squares
+    # Squares of the map frame that the tolerance `slack` leaves open, but that were seen to be occupied, or not, since
+    # it last moved
     full: frozenset[Square] = frozenset()
     empty: frozenset[Square] = frozenset()
-    turned: float = 0.0
+    turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive
+    # Shape class -> confidence in percent, from before it was grasped; {} until it is measured anew, if it was found to
+    # be larger than it seemed
     shape: Mapping[str, int] = field(default_factory=dict)
-    colour: str | None = None
+    colour: str | None = None  # The colour felt on it before it was grasped; None when it was not felt
+    # Numbers of the impressions, from 0, that support it; every impression of it is added
     support: tuple[int, ...] = ()
-    proven: bool = False
-    stuck: int = 0
-    since: int = 0
+    proven: bool = False  # Whether it was seen to move
+    stuck: int = 0  # How many of the last motions in a row did not move it
+    since: int = 0  # How many impressions had been received when it was first held
+    # Additional tolerance in squares: where the robot stands in its square, and so the centre of its turns, is not
+    # known exactly
     astray: float = 0.0
-    unexplained: int = 0
-    skewed: bool = False
+    unexplained: int = 0  # How many fields the worst explained of its motions left unexplained
+    skewed: bool = False  # Whether its outline was measured in another frame, and could not be measured in this one
+    # How many motions in all did not move it, though it had moved before and nothing is suspected to have stopped it
     thwarted: int = 0
-    inexact: bool = False
+    inexact: bool = False  # Whether its place is known only roughly, even where its corners seem to lie on the grid
+    # How far its sides may lie within the squares in which it was seen, as it lay when first held; None when they are
+    # not parallel to the grid
     insets: SubcellExtent | None = None
-    stopped: bool = False
+    stopped: bool = False  # Whether one of its motions ended early, or beside its predicted place
+    # Whether it was seen to move as one thing: a motion that did not end early left no field unexplained
     whole: bool = False
+    # The squares on which it was seen before it was grasped, map frame; None when these are not known any more, for the
+    # frame is another one
     seen_on: Patch | None = None
 
     @property
     def dubious(self) -> bool:
-        """Whether it may well lie elsewhere than believed, or have another outline.
-
-        So it is when its outline could not be measured in this frame, or a motion left MIN_DUBIOUS_FIELDS fields
-        unexplained.
-        """
+        """Whether it may well lie elsewhere than believed, or have another outline."""
         return self.skewed or self.unexplained >= MIN_DUBIOUS_FIELDS
 
     @property
     def play(self) -> float:
-        """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding.
-
-        It is the greater one of `slack` and `astray`.
-        """
+        """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding."""
         play = max(self.slack, self.astray)
         return play if play >= GRID_CORNER_TOLERANCE else 0.0
 
     @property
     def lying_insets(self) -> SubcellExtent | None:
-        """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid.
-
-        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the
-        side; the result holds the least and the greatest one of the west, east, south and north sides.
-        """
+        """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid."""
         quarters = self._quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
 
     @property
     def short(self) -> SideValues:
-        """The distance by which each side may lie further in than believed, in squares.
-
-        The values are those of its west, east, south and north sides, as it lies now. Where no insets are known, all
-        are `play`: how far the true outline may lie from the believed one.
-        """
+        """The distance by which each side may lie further in than believed, in squares."""
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
 
@@ -167,33 +114,21 @@ class HeldObject:
 
     @cached_property
     def sure(self) -> Patch:
-        """The squares that it surely covers, map frame; a patch without squares when there are none.
-
-        The patch holds the square (west, south) at [0, 0] of its mask, and the (rows, columns) mask, row 0 in the
-        south.
-        """
+        """The squares that it surely covers, map frame; a patch without squares when there are none."""
         inner = self._bound(1) if self.play else self.polygon
         patch = EMPTY_PATCH if inner.is_empty else patch_of_polygon(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
-        """The squares that it covers or may cover, those of `sure` included; map frame.
-
-        The patch holds the square (west, south) at [0, 0] of its mask, and the (rows, columns) mask, row 0 in the
-        south.
-        """
+        """The squares that it covers or may cover, those of `sure` included; map frame."""
         if not self.play:
             return self.sure
         patch = patch_of_polygon(self._bound(-1))
         return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
     def _bound(self, inwards: int) -> Any:
-        """Return the smallest possible outline (inwards 1), or the greatest (-1): a shapely polygon, map frame.
-
-        What is known of each side is used where no motion ended early; else the believed outline shrinks or grows by
-        `play` squares all round, its corners kept sharp. The smallest one may be empty, or several polygons.
-        """
+        """Return the smallest possible outline (inwards 1), or the greatest (-1): a shapely polygon, map frame."""
         insets = self.lying_insets
         if insets is not None and not self.stopped and self.play <= max(insets.play, COMMAND_ROUNDING):
             west, east, south, north = insets.plays[inwards > 0]
@@ -204,48 +139,12 @@ class HeldObject:
         return self.polygon.buffer(-inwards * self.play, join_style="mitre")
 
     def moved(self, polygon: Any, slack: float, degrees: float = 0.0, commanded: bool = False) -> "HeldObject":
-        """Return the object after a motion that it was seen to make.
-
-        Parameters
-        ----------
-        polygon : shapely Polygon
-            Where it lies now, map frame, in squares.
-        slack : float
-            How far the true outline may lie from that, in squares.
-        degrees : float
-            By how much it was turned by this motion, counter-clockwise positive.
-        commanded : bool
-            Whether the motion went all the way; if not, the object counts as `stopped` from now on, and its bounds are
-            the outline grown or shrunk by `play` all round. An object that was stopped lies close beside a grid line as
-            often as on it.
-
-        Returns
-        -------
-        HeldObject
-            A new object there, map frame: turned by `degrees` more, seen to move, with no motion in a row that failed,
-            and without squares seen to be covered or not.
-        """
+        """Return the object after a motion that it was seen to make."""
         stopped, turned = self.stopped or not commanded, self.turned + degrees
         return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
 
     def lying(self, polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> "HeldObject":
-        """Return the object at another place, of which no impression has shown anything yet.
-
-        Parameters
-        ----------
-        polygon : shapely Polygon
-            Where it lies, map frame, in squares. Corners that lie on corners of the grid but for rounding are moved
-            there.
-        otherwise : float
-            How far the true outline may lie from that, in squares. An outline with all corners on the grid is taken
-            for exact, unless its place is known only roughly or its sides may lie further in or out.
-
-        Returns
-        -------
-        HeldObject
-            A new object with that outline, map frame, its tolerance as `slack` in squares, and no squares seen to be
-            covered or not; all else as before.
-        """
+        """Return the object at another place, of which no impression has shown anything yet."""
         nothing: frozenset[Square] = frozenset()
         placed = snap_to_grid(polygon)
         slack = max(otherwise, OUTLINE_TOLERANCE) if self.inexact else outline_tolerance(placed, otherwise)
@@ -254,26 +153,7 @@ class HeldObject:
         return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
 
     def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "HeldObject":
-        """Return the object after an impression: fields of one square show which of its open squares it covers.
-
-        Its open squares are those that it may cover but does not surely cover; `full` and `empty` grow by those that
-        were seen.
-
-        Parameters
-        ----------
-        samples : Samples
-            The squares that each of the 160 fields samples, as offsets from the robot's square, map frame.
-        ranges : (160, 2) int16
-            The least and the greatest count of occupied squares under each field, in the order of an impression.
-        x, y : int
-            The square on which the impression was received, map frame.
-
-        Returns
-        -------
-        HeldObject
-            A new object, at the same place, with more squares in `full` and `empty`, map frame; the object itself when
-            no open square was seen alone in a field.
-        """
+        """Return the object after an impression: fields of one square show which of its open squares it covers."""
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
         open_ = self.possible.squares() - self.sure.squares()
         if not open_ or not single.any():
@@ -285,24 +165,9 @@ class HeldObject:
         return replace(self, full=full, empty=empty)
 
     def told(self, agrees: Callable[[Any], bool]) -> "HeldObject | None":
-        """Return the object with the insets of its sides narrowed by an impression.
-
-        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to a
-        side.
-
-        Parameters
-        ----------
-        agrees : function
-            Returns whether the impression agrees with an outline of the object: a shapely Polygon, map frame.
-
-        Returns
-        -------
-        HeldObject or None
-            A new object with narrower insets and its sides, now and where it first lay, moved to where they are then
-            believed to be; map frame. None when the impression agrees with no outline of possible insets, or when
-            insets say nothing of it: it lies askew, its place is known only roughly, or its outline is of another
-            frame.
-        """
+        """Return the object with the insets of its sides narrowed by an impression."""
+        # None when the impression agrees with no outline of possible insets, or when insets say nothing of it: it lies
+        # askew, its place is known only roughly, or its outline is of another frame.
         quarters = self._quarters
         if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > COMMAND_ROUNDING:
             return None
@@ -310,23 +175,8 @@ class HeldObject:
         return None if left is None else self.inset(left.after(-quarters))
 
     def inset(self, insets: SubcellExtent) -> "HeldObject | None":
-        """Return the object with other possible insets, its sides moved to where they are then believed to lie.
-
-        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to a
-        side.
-
-        Parameters
-        ----------
-        insets : SubcellExtent
-            The possible insets of its sides (west, east, south, north, in squares), as it lay when first held.
-
-        Returns
-        -------
-        HeldObject or None
-            A new object whose outline, now and where it first lay (map frame), and tolerance fit the insets; with the
-            same outline when the believed insets do not change. None when the result would be no outline, or when its
-            sides are not parallel to the grid.
-        """
+        """Return the object with other possible insets, its sides moved to where they are then believed to lie."""
+        # None when the result would be no outline, or when its sides are not parallel to the grid.
         quarters = self._quarters
         if self.insets is None or quarters is None:
             return None
@@ -340,102 +190,45 @@ class HeldObject:
         return replace(lying, first=first, insets=insets)
 
     def woken(self, far: float) -> "HeldObject":
-        """Return the object if the point where the robot woke is known within a distance: it bounds the turns' centre.
-
-        A new object of which only `astray` differs: it becomes the length, in squares, by which its rotation moves a
-        point that is so far off.
-
-        Parameters
-        ----------
-        far : float
-            The distance, in squares.
-        """
+        """Return the object if the point where the robot woke is known within a distance."""
+        # It bounds the turns' centre.
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "HeldObject":
-        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one.
-
-        A new object at the same place; `stuck` counts the last motions in a row that did not move it.
-        """
+        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one."""
         return replace(self, stuck=self.stuck + 1)
 
 
 def held_or_moved(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, HeldObject]:
-    """Return the objects that are held or were seen to move: a grasp of any other may have missed it.
-
-    Parameters
-    ----------
-    loads : mapping of str to HeldObject
-        All objects that were grasped, by name.
-    held : str or None
-        The name of the one in hand; None for empty hands.
-
-    Returns
-    -------
-    dict of str to HeldObject
-        The objects by name, in the order of `loads`.
-    """
+    """Return the objects that are held or were seen to move: a grasp of any other may have missed it."""
     return {name: load for name, load in loads.items() if load.proven or name == held}
 
 
 def snap_to_grid(polygon: Any) -> Any:
-    """Return a polygon with its corners rounded to corners of the grid if all of them lie there but for rounding.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon
-        In the map frame, in squares; corners of the grid have whole coordinates.
-
-    Returns
-    -------
-    shapely Polygon
-        The polygon itself when any of its corners lies off the grid.
-    """
+    """Return a polygon with its corners rounded to corners of the grid if all of them lie there but for rounding."""
     return shapely.transform(polygon, np.rint) if is_grid_aligned(polygon) else polygon
 
 
 def is_grid_aligned(polygon: Any) -> bool:
-    """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid.
-
-    `polygon` is not empty. Corners of the grid have whole coordinates, in squares; they may be missed by less than
-    GRID_CORNER_TOLERANCE.
-    """
+    """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid."""
     points = shapely.get_coordinates(polygon)
     return bool(np.abs(points - np.rint(points)).max() < GRID_CORNER_TOLERANCE)
 
 
 def outline_tolerance(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> float:
-    """Return how far the true outline may lie from a believed one, in squares.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon
-        The believed outline, map frame, in squares; its corners are on the grid when their coordinates are whole.
-    otherwise : float
-        The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact, so the result
-        is 0: its image shows it exactly.
-    """
+    """Return how far the true outline may lie from a believed one, in squares."""
     return 0.0 if is_grid_aligned(polygon) else max(otherwise, COMMAND_ROUNDING)
 
 
 def initial_insets(polygon: Any) -> SubcellExtent | None:
-    """Return the possible insets of the sides of an object that never moved; None when it is not on the grid.
-
-    An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the side;
-    the result holds the least and the greatest one of the west, east, south and north sides. `polygon` is its believed
-    outline, a shapely Polygon, map frame, or None when there is none; then the result is None. On the grid every side
-    may lie from 0 to less than 1 square further in.
-    """
+    """Return the possible insets of the sides of an object that never moved; None when it is not on the grid."""
+    # `polygon` is its believed outline, a shapely Polygon, map frame, or None when there is none; then the result is
+    # None.
     return SubcellExtent() if polygon is not None and is_grid_aligned(polygon) else None
 
 
 def initial_short(polygon: Any) -> SideValues:
-    """Return by how much further in the sides of an object that never moved may lie than its outline, in squares.
-
-    The values are those of west, east, south and north. `polygon` is its believed outline, a shapely Polygon, map
-    frame. All are 0 when it is None, 1 (a side lies less than that further in) when it lies on the grid, else
-    OUTLINE_TOLERANCE.
-    """
+    """Return by how much further in the sides of an object that never moved may lie than its outline, in squares."""
     if polygon is None:
         return NO_INSETS
     insets = initial_insets(polygon)
@@ -445,30 +238,7 @@ def initial_short(polygon: Any) -> SideValues:
 def subtract_held_objects(
     samples: Samples, ranges: NDArray[np.int16], x: int, y: int, loads: Iterable[HeldObject]
 ) -> tuple[Samples, NDArray[np.int16]]:
-    """Subtract objects that were held from an impression, so that it speaks of all else alone.
-
-    No argument is changed.
-
-    Parameters
-    ----------
-    samples : Samples
-        The squares that each of the 160 fields samples, as offsets from the robot's square, map frame.
-    ranges : (160, 2) int16
-        The least and the greatest count of occupied squares under each field.
-    x, y : int
-        The square on which the impression was received, map frame.
-    loads : iterable of HeldObject
-        The objects that were held, where they are believed to lie, map frame.
-
-    Returns
-    -------
-    samples : Samples
-        The samples without the squares that the objects cover or may cover: their weights are 0.
-    ranges : (160, 2) int16
-        The counts of the remaining squares: the least one without all that the objects may cover, the greatest one
-        without what they surely cover. A greatest count below 0 shows that an object is not where it is believed to be;
-        a least count may be below 0 as well.
-    """
+    """Subtract objects that were held from an impression, so that it speaks of all else alone."""
     left, weight = ranges.copy(), samples.weight.copy()
     for load in loads:
         possible, sure = load.possible, load.sure

@@ -18,38 +18,17 @@ MAX_SIDE_UNCERTAINTY = 0.5  # squares: the length of a side must be known within
 
 
 class SideInterval(NamedTuple):
-    """The length of a side, in squares.
+    """The length of a side, in squares."""
 
-    Attributes
-    ----------
-    believed : float
-        As the outline has it.
-    least, most : float
-        Its least and its greatest possible value, as far as it is known how far its ends lie within their squares.
-    """
-
-    believed: float
+    believed: float  # As the outline has it
+    # Its least and its greatest possible value, as far as it is known how far its ends lie within their squares
     least: float
     most: float
 
 
 def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInterval, SideInterval] | None:
-    """Return the lengths of the sides of a rectangle parallel to the grid, in squares: along x, then along y.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon or None
-        The believed outline, map frame, in squares; None when no outline is known.
-    insets : SubcellExtent or None
-        How far its sides may lie within the squares in which it was seen, as it lies now; None when that is not known.
-
-    Returns
-    -------
-    (SideInterval, SideInterval) or None
-        The side from west to east, then that from south to north: of each its length as the outline has it, and the
-        least and the greatest length possible. None for all that is no rectangle parallel to the
-        grid, and when an argument is None.
-    """
+    """Return the lengths of the sides of a rectangle parallel to the grid, in squares: along x, then along y."""
+    # None for all that is no rectangle parallel to the grid, and when an argument is None.
     if polygon is None or insets is None:
         return None
     points = shapely.get_coordinates(polygon)
@@ -60,35 +39,13 @@ def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInte
 
 
 def _side_interval(length: float, insets: SubcellExtent, axis: int) -> SideInterval:
-    """Return the interval of a side believed to be `length` squares long; axis 0 is west-east, axis 2 south-north.
-
-    It holds the believed, the least and the greatest length, in squares. `insets` tells how far the four sides may lie
-    within the squares in which the object was seen. The axis is the index of the first of the side's two ends in the
-    order west, east, south, north.
-    """
+    """Return the interval of a side believed to be `length` squares long; axis 0 is west-east, axis 2 south-north."""
     here, least, most = (sum(sides[axis : axis + 2]) for sides in (insets.believed, insets.least, insets.most))
     return SideInterval(length, length + here - most, length + here - least)
 
 
 def possible_rectangle_shapes(polygon: Any, insets: SubcellExtent | None) -> tuple[str, ...]:
-    """Return what a rectangle may be, as far as the lengths of its sides are known.
-
-    It may be a square when its sides may differ by at most MAX_SQUARE_DIFFERENCE squares, a brick when they may differ
-    by more.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon or None
-        The believed outline, map frame, in squares.
-    insets : SubcellExtent or None
-        How far its sides may lie within the squares in which it was seen, as it lies now.
-
-    Returns
-    -------
-    tuple of str
-        ("square",), ("brick",) or ("square", "brick"); () for all that is no rectangle parallel to the grid, and when
-        an argument is None.
-    """
+    """Return what a rectangle may be, as far as the lengths of its sides are known."""
     sides = side_intervals(polygon, insets)
     if sides is None:
         return ()
@@ -98,26 +55,7 @@ def possible_rectangle_shapes(polygon: Any, insets: SubcellExtent | None) -> tup
 
 
 def corrected_shape(shape: Mapping[str, int], polygon: Any, insets: SubcellExtent | None) -> Mapping[str, int]:
-    """Return the confidences in shape classes, corrected where a rectangle is known to be smaller than its squares.
-
-    Then the class that its believed sides show, square or brick, gets the greater confidence of both, and the other one
-    the lesser: together they have what a rectangle has.
-
-    Parameters
-    ----------
-    shape : mapping of str to int
-        Shape class -> confidence in percent, as the squares show it.
-    polygon : shapely Polygon or None
-        The believed outline, map frame, in squares.
-    insets : SubcellExtent or None
-        How far its sides may lie within the squares in which it was seen, as it lies now.
-
-    Returns
-    -------
-    mapping of str to int
-        `shape` itself where it is no rectangle parallel to the grid, no side is believed to lie further in, or the
-        length of a side is not known within MAX_SIDE_UNCERTAINTY squares.
-    """
+    """Return the confidences in shape classes, corrected where a rectangle is known to be smaller than its squares."""
     sides = side_intervals(polygon, insets)
     if sides is None or insets is None or not any(insets.believed):
         return shape

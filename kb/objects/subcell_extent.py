@@ -25,47 +25,27 @@ FULL_INSETS: SideValues = (1.0, 1.0, 1.0, 1.0)
 
 
 class SubcellExtent(NamedTuple):
-    """The possible insets of the sides of an object, as it lay when it was first held, unless stated otherwise.
+    """The possible insets of the sides of an object, as it lay when it was first held, unless stated otherwise."""
 
-    An inset is the distance, in squares, from the outer line of the squares in which the object was seen, inwards to
-    the side. Without any knowledge every side may have an inset from 0 to less than 1.
-
-    Attributes
-    ----------
-    least : SideValues
-        The least inset of each side (west, east, south, north), in squares.
-    most : SideValues
-        Each inset is less than this, in squares.
-    """
-
-    least: SideValues = NO_INSETS
-    most: SideValues = FULL_INSETS
+    least: SideValues = NO_INSETS  # The least inset of each side (west, east, south, north), in squares
+    most: SideValues = FULL_INSETS  # Each inset is less than this, in squares
 
     @property
     def believed(self) -> SideValues:
-        """The believed inset of each side, in squares: west, east, south, north.
-
-        0 along an axis on which nothing is known. Else that of an object as long as a whole number of squares, if this
-        is possible; else the middle of what is possible.
-        """
+        """The believed inset of each side, in squares: west, east, south, north."""
         return (*_believed(self.least[:2], self.most[:2]), *_believed(self.least[2:], self.most[2:]))
 
     @property
     def short(self) -> SideValues:
-        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares.
-
-        Each side lies less than this further in; 1 for a side of which nothing is known.
-        """
+        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 
     @property
     def plays(self) -> tuple[SideValues, SideValues]:
-        """The distances by which each side may lie further out than believed, and further in, in squares.
-
-        Two tuples, for further out and for further in, each of west, east, south, north. 0 for a side that is believed
-        to fill its squares, that is, to have the inset 0.
-        """
+        """The distances by which each side may lie further out than believed, and further in, in squares."""
+        # Two tuples, for further out and for further in, each of west, east, south, north. 0 for a side that is
+        # believed to fill its squares, that is, to have the inset 0.
         here = self.believed
         out = _as_sides(at - least if at else 0.0 for at, least in zip(here, self.least, strict=True))
         return out, _as_sides(most - at if at else 0.0 for at, most in zip(here, self.most, strict=True))
@@ -76,19 +56,12 @@ class SubcellExtent(NamedTuple):
         return max(max(sides) for sides in self.plays)
 
     def after(self, quarters: int) -> "SubcellExtent":
-        """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive.
-
-        The least and the greatest inset of each side, in squares, are sorted anew: what was the inset of the east side
-        is that of the north side after one quarter turn.
-        """
+        """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
         return SubcellExtent(turn_sides(self.least, quarters), turn_sides(self.most, quarters))
 
 
 def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float, float]:
-    """Return the believed insets of two opposite sides, in squares: west and east, or south and north.
-
-    `least` and `most` hold the least and the greatest possible inset of the two, in the same order.
-    """
+    """Return the believed insets of two opposite sides, in squares: west and east, or south and north."""
     if not any(least):
         return 0.0, 0.0
     low, high = max(least[1], 1.0 - most[0]), min(most[1], 1.0 - least[0])
@@ -99,11 +72,7 @@ def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float,
 
 
 def turn_sides(sides: SideValues, quarters: int) -> SideValues:
-    """Return the values of the sides as they lie after a number of quarter turns, counter-clockwise positive.
-
-    Both are in the order west, east, south, north: after one quarter turn the value of the east side is that of the
-    north.
-    """
+    """Return the values of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
     for _ in range(quarters % 4):
         west, east, south, north = sides
         sides = north, south, west, east
@@ -111,32 +80,13 @@ def turn_sides(sides: SideValues, quarters: int) -> SideValues:
 
 
 def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
-    """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares.
-
-    The values are those of west, east, south and north, negative for further out. Both arguments hold the least and the
-    greatest inset of the sides (distance inwards from the outer line of the squares in which the object was seen) as
-    the object lies in one and the same orientation.
-    """
+    """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares."""
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north
 
 
 def inset_outline(polygon: Any, sides: SideValues) -> Any:
-    """Return an outline with its sides moved inwards.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon
-        The outline, map frame, in squares; without holes.
-    sides : SideValues
-        How far the sides that face west, east, south and north move inwards, in squares; outwards where that is
-        negative.
-
-    Returns
-    -------
-    shapely Polygon or None
-        None when not all sides are parallel to the grid, or when the result has not the same corners.
-    """
+    """Return an outline with its sides moved inwards."""
     points = shapely.get_coordinates(polygon)[:-1]
     along = np.roll(points, -1, axis=0) - points  # each side from its corner
     upright = np.abs(along[:, 0]) <= GRID_ALIGNMENT_TOLERANCE
@@ -156,24 +106,7 @@ def inset_outline(polygon: Any, sides: SideValues) -> Any:
 
 
 def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
-    """Return an outline with its sides moved inwards, and by a margin more where they do not lie on grid lines.
-
-    Parameters
-    ----------
-    polygon : shapely Polygon
-        The outline, map frame, in squares; without holes.
-    inwards : SideValues
-        How far the sides that face west, east, south and north move inwards, in squares; outwards where that is
-        negative.
-    margin : float
-        How much further each side moves, in squares; negative for outwards. Sides on grid lines whose axis is not moved
-        stay exactly where they are.
-
-    Returns
-    -------
-    shapely Polygon or None
-        None when not all sides are parallel to the grid, or when the result has not the same corners.
-    """
+    """Return an outline with its sides moved inwards, and by a margin more where they do not lie on grid lines."""
     moved = inset_outline(polygon, _as_sides(far + margin for far in inwards))
     if moved is None:
         return None
@@ -184,43 +117,14 @@ def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
 
 
 def last_row_coverage(image: tuple[float, float, float, float]) -> SideValues:
-    """Return how much of the last row of squares on each side an image covers, from above 0 to 1 square.
-
-    Parameters
-    ----------
-    image : (x0, y0, x1, y1)
-        The bounds of the image (west, south, east, north), in squares, map frame.
-
-    Returns
-    -------
-    SideValues
-        In the order west, east, south, north; 1 where the bound lies on a grid line.
-    """
+    """Return how much of the last row of squares on each side an image covers, from above 0 to 1 square."""
     x0, y0, x1, y1 = image
     return math.floor(x0) + 1 - x0, x1 - math.ceil(x1) + 1, math.floor(y0) + 1 - y0, y1 - math.ceil(y1) + 1
 
 
 def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool]) -> SubcellExtent | None:
-    """Return the insets that an impression leaves possible.
-
-    Parameters
-    ----------
-    insets : SubcellExtent
-        The insets (west, east, south, north, in squares) that were possible before, for the sides as they lie at the
-        impression.
-    polygon : shapely Polygon
-        The believed outline, where it is believed to lie; map frame.
-    agrees : function
-        Returns whether the impression agrees with an outline: a shapely Polygon, map frame.
-
-    Returns
-    -------
-    SubcellExtent or None
-        The least and the greatest inset possible after it, in squares, of the west, east, south and north sides as they
-        lie at the impression: never more than before. Where several outlines agree, the narrowest bounds that hold all
-        of them; `insets` itself when the impression agrees and can show nothing. None when the impression agrees with
-        no possible outline.
-    """
+    """Return the insets that an impression leaves possible."""
+    # None when the impression agrees with no possible outline.
     west, east, south, north = insets.believed
     x0, y0, x1, y1 = polygon.bounds
     deep = last_row_coverage((x0 - west, y0 - south, x1 + east, y1 + north))
@@ -241,12 +145,7 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
 
 
 def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]:
-    """Return intervals of the inset of a side in each of which it covers the same squares; `deep` divides them.
-
-    `least` and `most` bound the inset; a side with an inset beyond `deep` leaves the last row of squares. All are in
-    squares. The result is [(least, most)] when `deep` does not lie between them or the inset is known well enough, else
-    [(least, deep), (deep, most)].
-    """
+    """Return intervals of the inset of a side in each of which it covers the same squares; `deep` divides them."""
     if least + MIN_ROW_DEPTH < deep < most - MIN_ROW_DEPTH and most - least > MIN_TESTED_INTERVAL:
         return [(least, deep), (deep, most)]
     return [(least, most)]

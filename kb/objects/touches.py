@@ -12,16 +12,7 @@ from kb.perception.frame import Frame
 
 
 class Touches:
-    """The colours that were felt, now and before.
-
-    Attributes
-    ----------
-    current : tuple of str or None
-        The colours of the 8 adjacent squares, clockwise from north in the robot frame, None for floor; () before the
-        first impression.
-    colours : dict of (x, y) to str
-        The colour, one lower-case letter, of each square (column, row) of the map frame that was felt not to be floor.
-    """
+    """The colours that were felt, now and before."""
 
     def __init__(self) -> None:
         self.current: tuple[str | None, ...] = ()
@@ -32,22 +23,7 @@ class Touches:
         self.colours.clear()
 
     def feel(self, touch: tuple[str | None, ...], frame: Frame, square: Square, held: Container[Square]) -> None:
-        """Take in the touches of an impression: `current` becomes them, and `colours` is kept up to date.
-
-        A square felt to be floor, or held by an object, loses its colour.
-
-        Parameters
-        ----------
-        touch : tuple of str or None
-            The colours of the 8 adjacent squares in the order of DIRECTIONS (robot frame), None for floor.
-        frame : Frame
-            The believed frame. Directions that point between two of its squares tell nothing.
-        square : (x, y)
-            The robot's square, map frame.
-        held : container of (x, y)
-            Squares, map frame, that objects which were held may cover: what is felt there belongs to them, not to the
-            map.
-        """
+        """Take in the touches of an impression: `current` becomes them, and `colours` is kept up to date."""
         self.current = touch
         x, y = square
         for direction, colour in zip(DIRECTIONS, touch, strict=True):
@@ -61,17 +37,11 @@ class Touches:
                 self.colours[there] = colour
 
     def felt_in(self, direction: str) -> str | None:
-        """Return the colour felt now in one of the eight DIRECTIONS of the robot frame.
-
-        The colour is one lower-case letter; None for floor, and before the first impression. Another direction raises
-        ValueError.
-        """
+        """Return the colour felt now in one of the eight DIRECTIONS of the robot frame."""
+        # None for floor, and before the first impression. Another direction raises ValueError.
         return self.current[DIRECTIONS.index(direction)] if self.current else None
 
     def colour_of(self, patch: Patch) -> str | None:
-        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was.
-
-        The patch is of the map frame; the colour is one lower-case letter.
-        """
+        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was."""
         colours = [self.colours[square] for square in sorted(patch.squares()) if square in self.colours]
         return colours[0] if colours else None

@@ -38,151 +38,78 @@ ADJACENT_OFFSETS = (
 
 
 class Samples(NamedTuple):
-    """The squares that the 160 fields sample at one orientation of the frame, relative to the robot's own square.
+    """The squares that the 160 fields sample at one orientation of the frame, relative to the robot's own square."""
 
-    Row n of each array belongs to field n, in the order of an impression.
-
-    Attributes
-    ----------
-    columns, rows : (160, 16) int32
-        Offsets of the sampled squares from the robot's own square, in squares, map frame: to the east and to the north,
-        negative to the west and south; 0 where padded.
-    weight : (160, 16) int16
-        How often a field samples that square; 0 is padding. The field of the robot's own square has padding alone.
-    slack : (160,) int16
-        How many samples of a field fall between two squares, and count for neither.
-    """
-
+    # Offsets of the sampled squares from the robot's own square, in squares, map frame: to the east and to the north,
+    # negative to the west and south; 0 where padded
     columns: Ints
     rows: Ints
+    # How often a field samples that square; 0 is padding. The field of the robot's own square has padding alone.
     weight: NDArray[np.int16]
-    slack: NDArray[np.int16]
+    slack: NDArray[np.int16]  # How many samples of a field fall between two squares, and count for neither
 
 
 @dataclass(frozen=True)
 class Frame:
-    """The orientation and the origin of the robot frame in the map frame.
+    """The orientation and the origin of the robot frame in the map frame."""
 
-    Attributes
-    ----------
-    angle : int
-        Degrees by which the robot frame is turned against the map frame, counter-clockwise positive, -44 to 45; 0 when
-        both have the same axes.
-    origin : (x, y)
-        The origin of the robot frame, in squares, map frame: a point of square (0, 0); its centre (0.5, 0.5) by
-        default.
-    """
-
+    # Degrees by which the robot frame is turned against the map frame, counter-clockwise positive, -44 to 45; 0 when
+    # both have the same axes
     angle: int = 0
+    # The origin of the robot frame, in squares, map frame: a point of square (0, 0); its centre (0.5, 0.5) by default.
     origin: XY = CENTRE
 
     def to_map(self, east: float, north: float) -> XY:
-        """Return a vector (east, north) of the robot frame as a vector (x, y) of the map frame, in squares.
-
-        A vector is a difference of points: the origin of the frames does not matter.
-        """
+        """Return a vector (east, north) of the robot frame as a vector (x, y) of the map frame, in squares."""
         return turned(east, north, self.angle)
 
     def to_utak(self, x: float, y: float) -> XY:
-        """Return a vector (x, y) of the map frame as a vector (east, north) of the robot frame, in squares.
-
-        A vector is a difference of points: the origin of the frames does not matter.
-        """
+        """Return a vector (x, y) of the map frame as a vector (east, north) of the robot frame, in squares."""
         return turned(x, y, -self.angle)
 
     def place_to_utak(self, x: float, y: float) -> XY:
-        """Return a point (x, y) of the map frame as a point (east, north) of the robot frame, in squares.
-
-        The robot frame has its origin where the robot woke.
-        """
+        """Return a point (x, y) of the map frame as a point (east, north) of the robot frame, in squares."""
         return self.to_utak(x - self.origin[0], y - self.origin[1])
 
     def place_from_utak(self, east: float, north: float) -> XY:
-        """Return a point (east, north) of the robot frame as a point (x, y) of the map frame, in squares.
-
-        The map frame has its origin at the south-west corner of square (0, 0), the one in which the robot woke.
-        """
+        """Return a point (east, north) of the robot frame as a point (x, y) of the map frame, in squares."""
         x, y = self.to_map(east, north)
         return x + self.origin[0], y + self.origin[1]
 
     def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
-        """Return points of the robot frame as points of the map frame.
-
-        `east` and `north` are arrays of the same shape, in squares from where the robot woke. The result is (x, y): two
-        float64 arrays of that shape, in squares, map frame.
-        """
+        """Return points of the robot frame as points of the map frame."""
         x, y = turned(east, north, self.angle)
         return x + self.origin[0], y + self.origin[1]
 
     def beside(self, direction: str) -> Square | None:
-        """Return the offset (columns, rows) of the adjacent square in a direction, map frame.
-
-        Parameters
-        ----------
-        direction : str
-            One of the eight DIRECTIONS of the robot frame; anything else raises ValueError.
-
-        Returns
-        -------
-        (int, int) or None
-            Squares to the east and to the north of the robot's own square, each -1, 0 or 1. None where the direction
-            points between two squares, so that it may name either.
-        """
+        """Return the offset (columns, rows) of the adjacent square in a direction, map frame."""
+        # None where the direction points between two squares, so that it may name either.
         named = self.adjacent_squares(direction)
         return named[0] if len(named) == 1 else None
 
     def adjacent_squares(self, direction: str) -> list[Square]:
-        """Return the offsets (columns, rows) of the adjacent squares that a direction of the robot frame may name.
-
-        The offsets are squares to the east and to the north of the robot's own square, map frame, west ones first. They
-        are several where the direction, one of the eight DIRECTIONS, points between two squares; else it is one.
-        """
+        """Return the offsets (columns, rows) of the adjacent squares that a direction of the robot frame may name."""
         column, row = self.to_map(*ADJACENT_OFFSETS[DIRECTIONS.index(direction)])
         return [(x, y) for x in _nearest_squares(column) for y in _nearest_squares(row)]
 
     def directions(self) -> dict[Square, str]:
-        """Return for each adjacent square a direction that surely names it.
-
-        Keys are offsets (columns, rows) from the robot's own square, map frame; values are of the eight DIRECTIONS of
-        the robot frame. Squares that no direction surely names are left out; of several directions the first of
-        DIRECTIONS is taken.
-        """
+        """Return for each adjacent square a direction that surely names it."""
         named = ((self.beside(direction), direction) for direction in reversed(DIRECTIONS))
         return {square: direction for square, direction in named if square is not None}
 
     def samples(self) -> Samples:
-        """Return the squares that each field of the retina samples: offsets from the robot's own square, map frame.
-
-        The result holds (160, 16) arrays of columns and rows (squares to the east and to the north), the weight of each
-        (how often it is sampled, 0 for padding), and for each field how many samples fall between two squares. Row n is
-        field n, in the order of an impression. It is cached: nobody may change the arrays.
-        """
+        """Return the squares that each field of the retina samples: offsets from the robot's own square, map frame."""
         return _samples(self.angle)
 
 
 def _nearest_squares(offset: float) -> list[int]:
-    """Return the square into which an offset falls along one axis; both, lower one first, where it falls between two.
-
-    The offset is in squares from the centre of the robot's own square, which is 0.
-    """
+    """Return the square into which an offset falls along one axis."""
+    # Both, lower one first, where it falls between two.
     return sorted({math.ceil(offset - 0.5 - SAMPLING_TIE_TOLERANCE), math.floor(offset + 0.5 + SAMPLING_TIE_TOLERANCE)})
 
 
 def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Coordinate]:
-    """Return a vector, or an array of vectors, rotated about the origin; exact for quarter turns.
-
-    Parameters
-    ----------
-    x, y : float or float64 array
-        The components of the vectors, in any unit; arrays of equal shape.
-    degrees : float
-        The angle, counter-clockwise positive.
-
-    Returns
-    -------
-    x, y : float or float64 array
-        The rotated components, in the form and unit of the arguments.
-    """
+    """Return a vector, or an array of vectors, rotated about the origin; exact for quarter turns."""
     if degrees % 90 == 0:
         for _ in range(int(degrees // 90) % 4):
             x, y = -y, x
@@ -193,12 +120,7 @@ def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Co
 
 @cache
 def _samples(angle: int) -> Samples:
-    """Return the squares that each field samples when the robot frame is turned by `angle` degrees.
-
-    The angle is that against the map frame, counter-clockwise positive. The result holds (160, 16) columns and rows,
-    offsets in squares from the robot's own square, map frame, their weights, and (160,) samples that fall between two
-    squares; the squares of a field come by column, then by row. It is cached: nobody may change its arrays.
-    """
+    """Return the squares that each field samples when the robot frame is turned by `angle` degrees."""
     owner, east, north = _field_offsets()
     c, s = turned(1.0, 0.0, angle)
     x, y = east * c - north * s, east * s + north * c
@@ -217,12 +139,7 @@ def _samples(angle: int) -> Samples:
 
 @cache
 def _field_offsets() -> Ints:
-    """Return the offsets under the retina, but the robot's own square: (3, 1023) int32.
-
-    Each column is one square, by the number of its field, then by east, then by north. The rows are the number of the
-    field that covers the offset, and squares to the east and to the north of the robot's own square, robot frame.
-    Cached: nobody may change it.
-    """
+    """Return the offsets under the retina, but the robot's own square: (3, 1023) int32."""
     offsets = [
         (number, east, north)
         for number, field in enumerate(FIELDS)

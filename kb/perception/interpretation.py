@@ -22,48 +22,20 @@ SURELY_VERGE = (  # percent: the confidence that something undecided as long as 
 
 
 class Kinds(NamedTuple):
-    """The kinds that regions are taken for.
+    """The kinds that regions are taken for."""
 
-    Regions are named `part<n>` on the map, `cells<n>` or `own` in an impression.
-
-    Attributes
-    ----------
-    kind : mapping of str to mapping of str to int
-        Region -> {floor, verge, object or utak: confidence in percent}. A region of which nothing is derived is
-        missing.
-    hidden_passages : frozenset of (str, str)
-        Pairs of free regions that must be connected by floor that is not seen.
-    """
-
+    # Region -> {floor, verge, object or utak: confidence in percent}. A region of which nothing is derived is missing.
     kind: Mapping[str, Mapping[str, int]]
+    # Pairs of free regions that must be connected by floor that is not seen
     hidden_passages: frozenset[tuple[str, str]]
 
     def of(self, region: str, kind: str) -> int:
-        """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it.
-
-        `region` is the name of a region; `kind` is floor, verge, object or utak.
-        """
+        """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it."""
         return self.kind.get(region, {}).get(kind, 0)
 
 
 def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> list[str]:
-    """Return the facts about regions for kb/asp/interpretation.lp, without full stops.
-
-    Parameters
-    ----------
-    percept : Percept
-        The regions of one impression or of the map.
-    touched : iterable of (str, str)
-        Pairs (name of a region, colour felt there).
-
-    Returns
-    -------
-    list of str
-        For each region R, in their order: `region(R,zero|nonzero,Certain)` (nonzero: occupied) with percent,
-        `extent(R,N)` in squares, `mass(R,N)` in tenths of squares, `rim(R)` where it touches what was not seen, and
-        `own(R)` for the robot's own cell. Then all `surrounds(Outer,Inner)`, sorted; then all `touched(R,Colour)`,
-        sorted.
-    """
+    """Return the facts about regions for kb/asp/interpretation.lp, without full stops."""
     facts = []
     for region in percept.regions:
         facts.append(f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})")
@@ -75,29 +47,7 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
 
 
 def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
-    """Decide what every region is: floor, verge, object or utak (the robot itself).
-
-    Parameters
-    ----------
-    percept : Percept
-        The regions of one impression or of the map.
-    touched : iterable of (str, str)
-        Pairs (name of a region, colour felt there).
-    rules : tuple of Path
-        Files with the user's own encodings, solved together with kb/asp/interpretation.lp.
-
-    Returns
-    -------
-    Kinds
-        For each region, by name, the confidence in percent in each kind that is derived for it, and the pairs of free
-        regions that must be connected by unseen floor; both empty when the encodings have no answer. Where one kind is
-        derived several times, the greatest confidence counts.
-
-    Raises
-    ------
-    BadInputError
-        The user's encodings are wrong.
-    """
+    """Decide what every region is: floor, verge, object or utak (the robot itself)."""
     kind: dict[str, dict[str, int]] = {}
     passages = set()
     for atom in solve([INTERPRETATION, *rules], percept_facts(percept, touched)) or ():
@@ -113,29 +63,7 @@ def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (),
 def classify_shapes(
     facts: Iterable[str], rules: tuple[Path, ...] = (), world: Iterable[str] = ()
 ) -> Mapping[str, Mapping[str, int]]:
-    """Decide which shapes objects have.
-
-    Parameters
-    ----------
-    facts : iterable of str
-        The facts fit/4, open_squares/2 and full_squares/2 of kb/asp/shapes.lp, without full stops, as of
-        `kb.world.objects.shape_facts`.
-    rules : tuple of Path
-        The user's own encodings, solved together with kb/asp/shapes.lp. What they state of an object and a class counts
-        in place of what the encoding derives; of several confidences the greatest.
-    world : iterable of str
-        What else is known of the objects, as facts without full stops; used where users' rules name it.
-
-    Returns
-    -------
-    mapping of str to mapping of str to int
-        Name of a node -> {shape class: confidence in percent}; nodes of which no shape is derived are missing.
-
-    Raises
-    ------
-    BadInputError
-        The user's encodings are wrong.
-    """
+    """Decide which shapes objects have."""
     answer: dict[str, dict[str, int]] = {}
     given = list(facts)
     named = [fact for fact in world if fact.partition("(")[0] in world_facts_named(SHAPES.stem, rules)]

@@ -27,30 +27,7 @@ def protrusions(
     felt: Mapping[RowColumn, str] | None = None,
     extent: int = MAX_THING_EXTENT,
 ) -> list[Bools]:
-    """Find the parts of the bounds of the floor that stick out into it. Parts that stand free are left out.
-
-    One may be part of another: where a thing ends cannot be seen. What is longer than `extent` is mostly wall, and left
-    out; but not where a colour that is not the verge's was felt on it.
-
-    Parameters
-    ----------
-    floor : (rows, columns) bool
-        Squares of floor, on the arrays of the map view (row 0 in the south).
-    solid : (rows, columns) bool
-        Squares of what bounds the floor, or stands against what does. Only such squares belong to the parts.
-    seen : (rows, columns) bool
-        Squares that were seen.
-    felt : mapping of (row, column) to str
-        The colour of each square of these arrays that was felt; None for none.
-    extent : int
-        Squares: the longer side of the containing rectangle of a part, at most.
-
-    Returns
-    -------
-    list of (rows, columns) bool
-        One mask for each part, on the same arrays, those of fewer squares first; no mask twice; [] when nothing sticks
-        out.
-    """
+    """Find the parts of the bounds of the floor that stick out into it. Parts that stand free are left out."""
     bounds = seen & ~floor  # squares beside a thing may be open: what lies askew does not end on a grid line
     across, along = (short & solid for short in (_short_runs(floor, bounds), _short_runs(floor.T, bounds.T).T))
     pockets = [pocket & solid for pocket in _corner_parts(floor, bounds)]
@@ -71,23 +48,7 @@ def protrusions(
 
 
 def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[Bools]:
-    """Return those of some parts that are things, by the colours felt on them.
-
-    The smallest part with a square felt not to be verge is a thing. A larger part about it is the thing instead, if
-    more squares of it were felt and have the same colour. No part that was felt in two colours is a thing.
-
-    Parameters
-    ----------
-    parts : list of (rows, columns) bool
-        The parts, smaller ones first, as of `protrusions`: masks on the arrays of the map view.
-    felt : mapping of (row, column) to str
-        The colour of each square of these arrays that was felt; VERGE_TOUCH_COLOUR where it was verge.
-
-    Returns
-    -------
-    list of (rows, columns) bool
-        The masks of the things, in the order in which `felt` names their squares; [] when there are none.
-    """
+    """Return those of some parts that are things, by the colours felt on them."""
     things: list[Bools] = []
     for place, colour in felt.items():
         if colour == VERGE_TOUCH_COLOUR or any(thing[place] for thing in things):
@@ -103,26 +64,7 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
 
 
 def with_embedded_things(things: list[Bools], felt: Mapping[RowColumn, str], solid: Bools) -> list[Bools]:
-    """Return some things that stick out, and those that stand in a gap of a wall, as far as they were felt.
-
-    A thing in a gap of a wall has just the squares on which it was felt: those of one colour that share edges. How far
-    it goes on in the wall cannot be seen. Where they share an edge with a thing of that colour that sticks out, they
-    belong to it, with all that is solid in the rectangle about them.
-
-    Parameters
-    ----------
-    things : list of (rows, columns) bool
-        The things that stick out, as of `separate_things`.
-    felt : mapping of (row, column) to str
-        The colour of each square that was felt; VERGE_TOUCH_COLOUR where it was verge.
-    solid : (rows, columns) bool
-        Squares of what bounds the floor.
-
-    Returns
-    -------
-    list of (rows, columns) bool
-        The things that stick out, in their order, then the others in the order of their colours and squares.
-    """
+    """Return some things that stick out, and those that stand in a gap of a wall, as far as they were felt."""
     found = list(things)
     for colour in sorted(set(felt.values()) - {VERGE_TOUCH_COLOUR}):
         mask = np.zeros(solid.shape, np.bool_)
@@ -147,27 +89,7 @@ def with_embedded_things(things: list[Bools], felt: Mapping[RowColumn, str], sol
 def joined_through_walls(
     things: list[Bools], parts: list[Bools], felt: Mapping[RowColumn, str], solid: Bools
 ) -> list[Bools]:
-    """Return some things, with what sticks out of a wall on the other side joined to those that fill a gap in it.
-
-    The thing meets the wall with the same columns, or rows, as what is behind the wall: another thing of its colour, or
-    a part that was not felt. Then that and what is between is taken for one thing, unless verge was felt there.
-
-    Parameters
-    ----------
-    things : list of (rows, columns) bool
-        The things, as of `with_embedded_things`.
-    parts : list of (rows, columns) bool
-        The parts of the bounds of the floor that stick out into it, as of `protrusions`.
-    felt : mapping of (row, column) to str
-        The colour of each square that was felt; VERGE_TOUCH_COLOUR where it was verge.
-    solid : (rows, columns) bool
-        Squares of what bounds the floor.
-
-    Returns
-    -------
-    list of (rows, columns) bool
-        The things; two that were joined are one, in the place of the first.
-    """
+    """Return some things, with what sticks out of a wall on the other side joined to those that fill a gap in it."""
     found = list(things)
     known = np.any(found, axis=0) if found else np.False_
     unfelt = [part for part in reversed(parts) if not (part & known).any() and not any(part[place] for place in felt)]
@@ -201,11 +123,7 @@ def _bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
 
 
 def _upright_bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
-    """Return the solid squares between two things of which one lies north of the other; None if they do not match.
-
-    They match when in the same columns the one meets what is solid to the south and the other what is solid to the
-    north, and in each of these columns that lies between them, and nothing else.
-    """
+    """Return the solid squares between two things of which one lies north of the other; None if they do not match."""
     low, high = sorted((one, other), key=lambda thing: int(np.flatnonzero(thing.any(1))[0]))
     columns = low.any(0), high.any(0)
     last = len(solid) - 1 - np.argmax(low[::-1], axis=0)  # the northernmost row of the southern thing, by column
@@ -232,23 +150,7 @@ def _within_rectangle(thing: Bools, solid: Bools, felt: Mapping[RowColumn, str])
 
 
 def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[Bools]:
-    """Return what of some parts may be a thing, or more of one, and was not felt yet.
-
-    Left out are parts on which verge was felt; of the others, squares that belong to a thing already known by touch,
-    and then all that has a felt square left.
-
-    Parameters
-    ----------
-    parts : list of (rows, columns) bool
-        The parts, smaller ones first, as of `protrusions`: masks on the arrays of the map view.
-    felt : mapping of (row, column) to str
-        The colour of each square of these arrays that was felt; VERGE_TOUCH_COLOUR where it was verge.
-
-    Returns
-    -------
-    list of (rows, columns) bool
-        The masks of what is left, none of them empty and none twice.
-    """
+    """Return what of some parts may be a thing, or more of one, and was not felt yet."""
     things = separate_things(parts, felt)
     known = np.any(things, axis=0) if things else np.False_
     left = [
@@ -261,19 +163,13 @@ def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
 
 
 def _felt_beyond(thing: Bools, part: Bools, felt: Mapping[RowColumn, str]) -> bool:
-    """Return whether a part contains a whole thing, and besides a square outside that thing which was felt.
-
-    `thing` and `part` are (rows, columns) masks; the keys of `felt` are (row, column) on the same arrays.
-    """
+    """Return whether a part contains a whole thing, and besides a square outside that thing which was felt."""
     return not (thing & ~part).any() and any(part[place] and not thing[place] for place in felt)
 
 
 def _short_runs(floor: Bools, bounds: Bools) -> Bools:
-    """Return the squares of short runs of a row, between floor to the west and floor to the east: (rows, columns) bool.
-
-    A run is a maximal series of squares of `bounds` in one row; it is short up to MAX_THING_LENGTH squares. Runs that
-    end at the edge of the array do not count. Both arguments are masks of one shape.
-    """
+    """Return the squares of short runs of a row, between floor to the west and floor to the east."""
+    # (rows, columns) bool.
     short = np.zeros_like(bounds)
     for row, start, stop in runs_along_rows(bounds).each():
         inside = start > 0 and stop < bounds.shape[1]
@@ -283,11 +179,7 @@ def _short_runs(floor: Bools, bounds: Bools) -> Bools:
 
 
 def _likely_parts(mask: Bools, things: Bools, extent: int) -> Iterator[Bools]:
-    """Yield the mask of each edge-connected part that is likely a thing.
-
-    Its longer side is at most `extent` squares, or a square of it was felt to be a thing. All masks are (rows,
-    columns) bool, of one shape; `things` has the squares that were felt so.
-    """
+    """Yield the mask of each edge-connected part that is likely a thing."""
     parts = components(mask)
     felt = set(np.unique(parts.labels[things & mask]).tolist())
     for n, (south, west, north, east) in enumerate(bounding_boxes(parts.labels, parts.number)[1:].tolist(), 1):
@@ -296,12 +188,7 @@ def _likely_parts(mask: Bools, things: Bools, extent: int) -> Iterator[Bools]:
 
 
 def _corner_parts(floor: Bools, bounds: Bools) -> Iterator[Bools]:
-    """Yield the masks of what lies in a corner of two straight walls, between where floor meets the one and the other.
-
-    `floor` and `bounds` are (rows, columns) masks of one shape, and so are the results. Only what measures at most
-    MAX_THING_LENGTH squares along both walls, and is edge-connected, is yielded; all four directions of corners are
-    tried.
-    """
+    """Yield the masks of what lies in a corner of two straight walls, between where floor meets each."""
     for up, on in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         ground, full = floor[::up, ::on], bounds[::up, ::on]
         meets = np.zeros_like(full)  # floor with bounds to the south and to the west

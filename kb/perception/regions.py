@@ -16,76 +16,28 @@ from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, n
 
 
 class Region(NamedTuple):
-    """One region: a maximal edge-connected set of free, or of occupied, cells of an impression or squares of the map.
+    """One region: a maximal edge-connected set of free, or occupied, cells of an impression or squares of the map."""
 
-    Attributes
-    ----------
-    name : str
-        Of a region of the map `part<n>`, n from 1; of one of an impression `cells<n>`, n from 1, or `own`.
-    occupied : bool
-        Whether it is a region of occupied cells rather than of free ones.
-    certain : int
-        Percent of its squares that are surely so, whatever counts the gray levels stand for.
-    rim : bool
-        Whether it touches what was not seen.
-    extent : int
-        The longer side of its containing rectangle, in squares.
-    mass : int
-        The expected number of its occupied squares, in tenths of squares.
-    own : bool
-        Whether it is the cell of the robot's own square.
-    """
-
-    name: str
-    occupied: bool
-    certain: int
-    rim: bool
-    extent: int
-    mass: int
-    own: bool = False
+    name: str  # Of a region of the map `part<n>`, n from 1; of one of an impression `cells<n>`, n from 1, or `own`
+    occupied: bool  # Whether it is a region of occupied cells rather than of free ones
+    certain: int  # Percent of its squares that are surely so, whatever counts the gray levels stand for
+    rim: bool  # Whether it touches what was not seen
+    extent: int  # The longer side of its containing rectangle, in squares
+    mass: int  # The expected number of its occupied squares, in tenths of squares
+    own: bool = False  # Whether it is the cell of the robot's own square
 
 
 class Percept(NamedTuple):
-    """The regions of one impression or of the map.
+    """The regions of one impression or of the map."""
 
-    Attributes
-    ----------
-    regions : tuple of Region
-        The regions; on the map free ones first.
-    adjacent : frozenset of (str, str)
-        Pairs of names of regions that share an edge, both ways round.
-    surrounds : frozenset of (str, str)
-        Pairs of names (outer, inner): no way leads from inner to what was not seen, except across outer.
-    """
-
-    regions: tuple[Region, ...]
-    adjacent: frozenset[tuple[str, str]]
+    regions: tuple[Region, ...]  # The regions; on the map free ones first
+    adjacent: frozenset[tuple[str, str]]  # Pairs of names of regions that share an edge, both ways round
+    # Pairs of names (outer, inner): no way leads from inner to what was not seen, except across outer
     surrounds: frozenset[tuple[str, str]]
 
 
 def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, frozenset[int]]]:
-    """Return the regions of one impression. The robot's own cell is a region by itself.
-
-    Parameters
-    ----------
-    levels : tuple of int
-        The 160 gray levels of the impression, 0 to 7; a field is occupied from level 1 on.
-
-    Returns
-    -------
-    percept : Percept
-        The regions: `own` first, then `cells1`, `cells2`, ... by the least number of their fields; each with its name,
-        whether it is occupied, the percent of its squares that are surely so, whether it touches the retina's edge, its
-        longer side in squares, and its mass in tenths of squares. Then the pairs of names of regions that share an
-        edge, and the pairs (outer, inner) of those that surround each other.
-    cells : dict of str to frozenset of int
-        Name of a region -> the numbers of its fields (0 to 159, in the order of an impression), in the same order.
-
-    Raises
-    ------
-    ValueError
-        A field cannot show its level.
-    """
+    """Return the regions of one impression. The robot's own cell is a region by itself."""
     cells: dict[str, frozenset[int]] = {"own": frozenset({OWN_FIELD})}
     left = set(range(len(FIELDS))) - {OWN_FIELD}
     while left:
@@ -102,29 +54,7 @@ def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, froz
 def map_regions(
     occupied: Bools, seen: Bools, certain: Bools, probability: NDArray[np.float32] | None = None
 ) -> tuple[Percept, Labels]:
-    """Return the regions of the map.
-
-    Parameters
-    ----------
-    occupied : (rows, columns) bool
-        Squares on which something may be, on the arrays of the map view (row 0 in the south).
-    seen : (rows, columns) bool
-        Squares that were seen. All others belong to no region.
-    certain : (rows, columns) bool
-        Squares that the counts settle.
-    probability : (rows, columns) float32, optional
-        That a square is occupied; without it 1 on `occupied` and 0 elsewhere.
-
-    Returns
-    -------
-    percept : Percept
-        The regions in the order of their numbers, named `part<n>`: free regions first, from 1, then occupied ones. Each
-        with whether it is occupied, the percent of its squares that are settled, whether it touches what was not seen,
-        its longer side in squares, and its mass in tenths of squares. Then the pairs of names of regions that share an
-        edge, and the pairs (outer, inner) of those that surround each other.
-    labels : (rows, columns) int32
-        The number n of each square's region; 0 where nothing was seen.
-    """
+    """Return the regions of the map."""
     zero, full = components(seen & ~occupied), components(seen & occupied)
     labels = np.where(full.labels > 0, full.labels + zero.number, zero.labels).astype(np.int32)
     count = zero.number + full.number
@@ -149,11 +79,7 @@ def label_of(name: str) -> int:
 
 
 def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
-    """Return the numbers of the fields of the region of the cell `first`: those of `among` connected with it.
-
-    They are free, or occupied, as `first` is: gray level 0, or above 0. `levels` are the 160 gray levels of an
-    impression.
-    """
+    """Return the numbers of the fields of the region of the cell `first`: those of `among` connected with it."""
     region, edge = {first}, [first]
     while edge:
         for cell in neighbours()[edge.pop()]:
@@ -164,14 +90,7 @@ def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
 
 
 def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]) -> Region:
-    """Return the region formed by some cells of an impression.
-
-    It holds the name, whether it is occupied, the percent of its squares that are surely so, whether it touches the
-    edge of the retina, its longer side in squares, and its mass (expected occupied squares) in tenths of squares. The
-    robot's own cell counts as surely occupied. `members` are the numbers of its fields, at least one, all free or all
-    occupied; `levels` the 160 gray levels; `ranges` the (160, 2) least and greatest counts of occupied squares, as of
-    `count_ranges`.
-    """
+    """Return the region formed by some cells of an impression."""
     cells = sorted(members)
     occupied = levels[cells[0]] > 0
     area = sum(FIELDS[c].side ** 2 for c in cells)
@@ -186,21 +105,14 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
 
 
 def extents(labels: Labels, count: int) -> Longs:
-    """Return the longer side of each label's containing rectangle, in squares: (count + 1,) int64, [n] for label n.
-
-    `labels` is (rows, columns) int32 with values 0 to `count`. 0 for labels not there.
-    """
+    """Return the longer side of each label's containing rectangle, in squares: (count + 1,) int64, [n] for label n."""
     south, west, north, east = bounding_boxes(labels, count).T
     longer: Longs = np.maximum(np.maximum(north - south, east - west) + 1, 0)
     return longer
 
 
 def _touching(labels: Labels, count: int) -> tuple[set[tuple[str, str]], set[int]]:
-    """Return the regions that share an edge, and those that touch unseen squares or the edge of the array.
-
-    `labels` is (rows, columns) int32 with values 0 (not seen) to `count`. The first set has pairs of names `part<n>`,
-    both ways round; the second has labels.
-    """
+    """Return the regions that share an edge, and those that touch unseen squares or the edge of the array."""
     framed = np.pad(labels, 1).astype(np.int64)
     pairs = [np.zeros(0, np.int64)]
     for a, b in ((framed[:, :-1], framed[:, 1:]), (framed[:-1], framed[1:])):
@@ -214,12 +126,7 @@ def _touching(labels: Labels, count: int) -> tuple[set[tuple[str, str]], set[int
 
 
 def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Percept:
-    """Return regions together with the pairs that touch and those that surround each other.
-
-    The regions keep their order. `touching` has pairs of names of regions that share an edge, both ways round; the
-    result holds them as they are, and the pairs of names (outer, inner) such that no way leads from inner to what was
-    not seen, except across outer.
-    """
+    """Return regions together with the pairs that touch and those that surround each other."""
     beside: dict[str, set[str]] = {region.name: set() for region in regions}
     for a, b in touching:
         beside[a].add(b)
@@ -228,14 +135,7 @@ def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Per
 
 
 def _surrounding(beside: Mapping[str, set[str]], outside: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield the pairs (outer, inner) such that no way leads from inner to the outside, except across outer.
-
-    `beside` has for each region, by name, the regions that touch it; `outside` the regions that touch what was not
-    seen. Regions that are connected with no region of `outside` are in no pair.
-
-    Strategy: one depth-first search from the outside. If no edge leads from the subtree of a child back past its
-    parent, the parent surrounds that subtree. Source: Hopcroft and Tarjan (1973), articulation points.
-    """
+    """Yield the pairs (outer, inner) such that no way leads from inner to the outside, except across outer."""
     open_, order, back = (
         set(outside),
         dict[str, int](),

@@ -20,28 +20,16 @@ RETINA_ZONES = (
 
 
 class Field(NamedTuple):
-    """One field of the retina, a square of side x side table squares.
+    """One field of the retina, a square of side x side table squares."""
 
-    Attributes
-    ----------
-    east, north : int
-        The offset of its south-west square from the robot's own square, in squares, robot frame; negative for west,
-        south.
-    side : int
-        Its side, in squares: 1 in the fovea, 2 in the middle zone, 4 in the outer zone.
-    """
-
+    # The offset of its south-west square from the robot's own square, in squares, robot frame; negative for west, south
     east: int
     north: int
-    side: int
+    side: int  # Its side, in squares: 1 in the fovea, 2 in the middle zone, 4 in the outer zone
 
 
 def _fields() -> tuple[Field, ...]:
-    """Return the 160 fields in the order of an impression: zones from the fovea, north row first, west to east.
-
-    Each is (east, north, side): the offset of its south-west square from the robot's own square, and its side, in
-    squares, robot frame.
-    """
+    """Return the 160 fields in the order of an impression: zones from the fovea, north row first, west to east."""
     fields, inner = [], 0
     for reach, side in RETINA_ZONES:
         for north in range(reach - side, -reach - 1, -side):
@@ -58,22 +46,7 @@ OWN_FIELD = FIELDS.index(Field(0, 0, 1))  # the field of the robot's own square,
 
 @cache
 def level_counts(side: int, level: int) -> tuple[int, int]:
-    """Return the least and the greatest number of occupied squares that a field shows as a gray level.
-
-    The result is (least, greatest), from 0 to side x side squares.
-
-    Parameters
-    ----------
-    side : int
-        The side of the field, in squares: 1, 2 or 4.
-    level : int
-        The gray level, 0 (all free) to 7 (all occupied), rounded from the occupied share.
-
-    Raises
-    ------
-    ValueError
-        No number of occupied squares shows this level.
-    """
+    """Return the least and the greatest number of occupied squares that a field shows as a gray level."""
     area = side * side
     fitting = [n for n in range(area + 1) if (2 * MAX_GRAY_LEVEL * n + area) // (2 * area) == level]
     if not fitting:
@@ -82,24 +55,7 @@ def level_counts(side: int, level: int) -> tuple[int, int]:
 
 
 def count_ranges(levels: tuple[int, ...]) -> NDArray[np.int16]:
-    """Return the least and the greatest number of occupied squares under each field.
-
-    Parameters
-    ----------
-    levels : tuple of int
-        The 160 gray levels of an impression.
-
-    Returns
-    -------
-    (160, 2) int16
-        Row n for field n, in the order of an impression: (least, greatest). The field of the robot's own square says
-        nothing: its counts are 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        A field cannot show its level.
-    """
+    """Return the least and the greatest number of occupied squares under each field."""
     ranges = np.array([level_counts(field.side, level) for field, level in zip(FIELDS, levels, strict=True)], np.int16)
     ranges[OWN_FIELD] = (0, 1)
     return ranges
@@ -107,11 +63,7 @@ def count_ranges(levels: tuple[int, ...]) -> NDArray[np.int16]:
 
 @cache
 def field_plan() -> NDArray[np.int16]:
-    """Return the number of the field that covers each offset: (32, 32) int16, [north + 16, east + 16].
-
-    Offsets are squares from the robot's own square, robot frame, -16 to 15; row 0 is in the south, column 0 in the
-    west. Values are 0 to 159, in the order of an impression. Cached: nobody may change it.
-    """
+    """Return the number of the field that covers each offset: (32, 32) int16, [north + 16, east + 16]."""
     numbers = np.empty((2 * RETINA_REACH, 2 * RETINA_REACH), np.int16)
     for number, (east, north, side) in enumerate(FIELDS):
         row, column = north + RETINA_REACH, east + RETINA_REACH

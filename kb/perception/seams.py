@@ -26,18 +26,11 @@ MAX_PAIRED_LINES = 40  # lines of which pairs are tried where no single one part
 
 
 class SeamLine(NamedTuple):
-    """A straight line along the grid between squares of a region, from rim to rim.
+    """A straight line along the grid between squares of a region, from rim to rim."""
 
-    Attributes
-    ----------
-    upright : whether it runs along columns, between two columns; else between two rows.
-    at : the column east of it, or the row north of it.
-    first, last : the first and the last row that it runs along; columns for a level line.
-    """
-
-    upright: bool
-    at: int
-    first: int
+    upright: bool  # whether it runs along columns, between two columns; else between two rows
+    at: int  # the column east of it, or the row north of it
+    first: int  # the first and the last row that it runs along; columns for a level line
     last: int
 
     @property
@@ -46,10 +39,7 @@ class SeamLine(NamedTuple):
         return self.last - self.first + 1
 
     def sides(self, along: int) -> tuple[RowColumn, RowColumn]:
-        """Return the squares (row, column) on both sides of the line: west and east, or south and north.
-
-        along : the row of the squares; for a level line their column.
-        """
+        """Return the squares (row, column) on both sides of the line: west and east, or south and north."""
         if self.upright:
             return (along, self.at - 1), (along, self.at)
         return (self.at - 1, along), (self.at, along)
@@ -61,29 +51,16 @@ class SeamLine(NamedTuple):
 
 
 class Parting(NamedTuple):
-    """A region taken apart.
+    """A region taken apart."""
 
-    Attributes
-    ----------
-    parts : the mask of each part, in raster order of their first squares.
-    unsettled : masks of squares on the rim beside seams of which it is not settled where exactly they run; what is felt
-        on them tells more.
-    """
-
-    parts: tuple[Bools, ...]
+    parts: tuple[Bools, ...]  # the mask of each part, in raster order of their first squares
+    # Masks of squares on the rim beside seams of which it is not settled where exactly they run; what is felt on them
+    # tells more
     unsettled: tuple[Bools, ...] = ()
 
 
 def part_by_colour(region: Bools, felt: Mapping[RowColumn, str]) -> Parting:
-    """Return a region cut into parts none of which was felt in two colours.
-
-    Where it cannot be parted so, it is one part.
-
-    Parameters
-    ----------
-    region : (rows, columns) bool, an edge-connected set of squares.
-    felt : the colour of each square (row, column) of these arrays that was felt.
-    """
+    """Return a region cut into parts none of which was felt in two colours."""
     colours = {place: colour for place, colour in felt.items() if region[place]}
     if len(set(colours.values())) < 2:
         return Parting((region,))
@@ -102,11 +79,7 @@ def part_by_colour(region: Bools, felt: Mapping[RowColumn, str]) -> Parting:
 
 
 def _parted(region: Bools, colours: Mapping[RowColumn, str]) -> Parting:
-    """Return a region cut into parts none of which was felt in two colours; one part where that cannot be.
-
-    region : (rows, columns) bool on its containing rectangle. colours : those of its squares that were felt, at least
-    two different ones.
-    """
+    """Return a region cut into parts none of which was felt in two colours; one part where that cannot be."""
     lines = list(_lines(region))
     cuts: list[SeamLine] = []
     labels = _labels(region, cuts)
@@ -129,22 +102,7 @@ def _parted(region: Bools, colours: Mapping[RowColumn, str]) -> Parting:
 
 
 def cornered_parts(solid: Bools, felt: Mapping[RowColumn, str]) -> list[Bools]:
-    """Return the parts with felt squares into which what is solid falls along lines from inner corner to inner corner.
-
-    So a thing that leans on a wall with a long side parts from it, also where it goes on into a gap of another wall.
-
-    Parameters
-    ----------
-    solid : (rows, columns) bool
-        Squares of what bounds the floor, and all squares that were never seen.
-    felt : mapping of (row, column) to str
-        The colour of each square of these arrays that was felt.
-
-    Returns
-    -------
-    list of (rows, columns) bool
-        The masks of parts on which a colour was felt, those of fewer squares first.
-    """
+    """Return the parts with felt squares into which solids fall along lines from inner corner to inner corner."""
     cuts = [
         line
         for line in _lines(solid, max(solid.shape))
@@ -156,15 +114,7 @@ def cornered_parts(solid: Bools, felt: Mapping[RowColumn, str]) -> list[Bools]:
 
 
 def halves(region: Bools) -> Iterator[Bools]:
-    """Yield the parts that arise when a region is cut in two along one straight line, the simplest outlines first.
-
-    For each cut both parts come one after the other. Lines from inner corner to inner corner come first, then short
-    ones.
-
-    Parameters
-    ----------
-    region : (rows, columns) bool, an edge-connected set of squares.
-    """
+    """Yield the parts that arise when a region is cut in two along one straight line, the simplest outlines first."""
     lines = sorted(_lines(region, max(region.shape)), key=lambda line: (_loose_ends(line, region), line.length))
     for line in lines:
         labels = _labels(region, [line])
@@ -218,10 +168,7 @@ def _best(
     labels: Labels,
     mixed: int,
 ) -> tuple[SeamLine, ...] | None:
-    """Return the lines along which a region is cut next; None when no choice parts squares of different colours.
-
-    labels : the parts so far. mixed : how many pairs of squares of different colours are in one part so far.
-    """
+    """Return the lines along which a region is cut next; None when no choice parts squares of different colours."""
     parts = int(labels.max())
     best, least = None, (mixed, 0, 0, 0)
     for choice in choices:
@@ -239,10 +186,7 @@ def _best(
 
 
 def _is_inner_corner(end: int, line: SeamLine, region: Bools) -> bool:
-    """Return whether a line ends at an inner corner of a region: just one of the two squares beyond belongs to it.
-
-    end : 0 for the first end of the line, 1 for the last.
-    """
+    """Return whether a line ends at an inner corner of a region: just one of the two squares beyond belongs to it."""
     beyond = line.sides(line.last + 1 if end else line.first - 1)
     rows, columns = region.shape
     inside = [place for place in beyond if 0 <= place[0] < rows and 0 <= place[1] < columns]
@@ -250,10 +194,7 @@ def _is_inner_corner(end: int, line: SeamLine, region: Bools) -> bool:
 
 
 def _lopsided(line: SeamLine, labels: Labels, colours: Mapping[RowColumn, str]) -> int:
-    """Return by how many squares a line is nearer to what was felt on its one side than on the other.
-
-    labels : the parts with this cut. colours : the squares that were felt.
-    """
+    """Return by how many squares a line is nearer to what was felt on its one side than on the other."""
     low, high = (int(labels[place]) for place in line.ends[0])
     across = 1 if line.upright else 0
     below = [line.at - 1 - place[across] for place in colours if labels[place] == low and place[across] < line.at]
@@ -262,10 +203,7 @@ def _lopsided(line: SeamLine, labels: Labels, colours: Mapping[RowColumn, str]) 
 
 
 def _unsettled(line: SeamLine, region: Bools, colours: Mapping[RowColumn, str]) -> Bools:
-    """Return the unfelt squares on the rim at the ends of a line, where nothing settles that it runs there.
-
-    An end at an inner corner of the region settles it, and so does one where both sides were felt.
-    """
+    """Return the unfelt squares on the rim at the ends of a line, where nothing settles that it runs there."""
     mask: Bools = np.zeros_like(region)
     ends = line.ends
     if any(_is_inner_corner(number, line, region) or all(p in colours for p in ends[number]) for number in (0, 1)):
@@ -276,18 +214,11 @@ def _unsettled(line: SeamLine, region: Bools, colours: Mapping[RowColumn, str]) 
 
 
 class PartedMap(NamedTuple):
-    """The regions of the map after regions of two colours were parted.
+    """The regions of the map after regions of two colours were parted."""
 
-    Attributes
-    ----------
-    percept : the regions; new ones last.
-    labels : (rows, columns) int32, the number n of each square's region `part<n>`; 0 where nothing was seen.
-    unsettled : masks of squares on which it is to be felt where exactly one part ends.
-    """
-
-    percept: Percept
-    labels: Labels
-    unsettled: tuple[Bools, ...] = ()
+    percept: Percept  # the regions; new ones last
+    labels: Labels  # (rows, columns) int32, the number n of each square's region `part<n>`; 0 where nothing was seen
+    unsettled: tuple[Bools, ...] = ()  # masks of squares on which it is to be felt where exactly one part ends
 
 
 def part_mixed_regions(
@@ -297,18 +228,7 @@ def part_mixed_regions(
     certain: Bools,
     probability: NDArray[np.float32],
 ) -> PartedMap:
-    """Return the regions of the map, with isolated regions on which two colours were felt parted.
-
-    The largest part keeps the name of the region; the others get names `part<n>` beyond all others. What surrounds the
-    region surrounds each of its parts.
-
-    Parameters
-    ----------
-    percept, labels : the regions as they were seen, as of `map_regions`.
-    felt : the colour of each square (row, column) of the map view that was felt.
-    certain : (rows, columns) bool, squares that the counts settle.
-    probability : (rows, columns) float32, that a square is occupied.
-    """
+    """Return the regions of the map, with isolated regions on which two colours were felt parted."""
     colours: dict[int, dict[RowColumn, str]] = {}
     for place, colour in felt.items():
         colours.setdefault(int(labels[place]), {})[place] = colour

@@ -35,40 +35,17 @@ ENCODING_PREDICATES = frozenset(
 
 
 class Assumption(NamedTuple):
-    """One fact or rule that is assumed.
+    """One fact or rule that is assumed."""
 
-    Attributes
-    ----------
-    written : the fact or rule in one line, with its full stop.
-    rule : the text of a rule file that states it; '' when it counts for queries alone.
-    facts : facts that queries see besides those that the robot believes, with their full stops.
-    reaches : the names of the encodings that it reaches, without `.lp`; () when it counts for queries alone.
-    """
-
-    written: str
-    rule: str
-    facts: tuple[str, ...]
+    written: str  # the fact or rule in one line, with its full stop
+    rule: str  # the text of a rule file that states it; '' when it counts for queries alone
+    facts: tuple[str, ...]  # facts that queries see besides those that the robot believes, with their full stops
+    # The names of the encodings that it reaches, without `.lp`; () when it counts for queries alone.
     reaches: tuple[str, ...]
 
 
 def read_assumptions(text: str, kb_files: Sequence[str] = ()) -> tuple[Assumption, ...]:
-    """Return the assumptions that a text states: facts, or rules in the language of `--kb`.
-
-    Parameters
-    ----------
-    text : one or more facts with full stops (the last may lack it), or rules. `utak` may stand for `org`.
-    kb_files : the paths of the user's rule files, with which they are tested together.
-
-    Returns
-    -------
-    The assumptions in the order of the text, at least one; rules come as one assumption.
-
-    Raises
-    ------
-    BadInputError : the text has errors, or contradicts the encodings or the user's rules, or would change nothing. The
-        problems stand in a file named `assume`.
-    CannotOpenError : a rule file cannot be read.
-    """
+    """Return the assumptions that a text states: facts, or rules in the language of `--kb`."""
     source = source_from_bytes(ASSUMPTION_FILE, _ended(text).encode("utf-8", errors="surrogateescape"))
     beyond = list(integers_beyond_32_bits(source))
     if beyond:
@@ -82,21 +59,7 @@ def read_assumptions(text: str, kb_files: Sequence[str] = ()) -> tuple[Assumptio
 
 
 def canonical_facts(text: str, file: str) -> tuple[str, ...]:
-    """Return the facts of a text as the world model writes them: no blanks, full stops, `org` for `utak`.
-
-    Parameters
-    ----------
-    text : facts; the last full stop may be missing.
-    file : the name of the text in messages.
-
-    Returns
-    -------
-    The facts in the order of the text, such as `shape(o1,square,90).`.
-
-    Raises
-    ------
-    BadInputError : the text has syntax errors, or states no fact.
-    """
+    """Return the facts of a text as the world model writes them: no blanks, full stops, `org` for `utak`."""
     source = source_from_bytes(file, _ended(text).encode("utf-8", errors="surrogateescape"))
     facts = parse_facts(source)
     if not facts:
@@ -163,11 +126,7 @@ def _require_own_predicate(source: Source, fact: Fact, kb_files: Sequence[str]) 
 
 
 def _guarded(fact: Fact) -> str:
-    """Return a rule that states a fact as long as the things that it names are there.
-
-    Regions, candidates and parameters are such things: an encoding refuses what is derived of others, and they may
-    vanish with the next impression.
-    """
+    """Return a rule that states a fact as long as the things that it names are there."""
     guards = []
     for interface in USER_RULE_INTERFACES.values():
         for slot, term in zip(interface.get(fact.signature, ()), fact.args, strict=False):
@@ -196,11 +155,7 @@ def _rule(text: str, written: str, facts: tuple[str, ...], kb_files: Sequence[st
 
 
 def _states_something(encoding: str, own: Source, reaching: Sequence[object]) -> bool:
-    """Return whether rules that an assumption adds to an encoding can change its answer.
-
-    They do when one of the encoding's own predicates occurs in any rule there: a fact of the user's own predicate, that
-    no other rule reads, changes nothing.
-    """
+    """Return whether rules that an assumption adds to an encoding can change its answer."""
     known = set(USER_RULE_INTERFACES[encoding])
     atoms = {atom.signature for one in reaching for atom in (*one.heads, *one.body)}  # type: ignore[attr-defined]
     return bool(known & atoms)

@@ -19,20 +19,13 @@ CORE_GUIDED = ("--opt-strategy=usc,oll,stratify",)
 
 
 class BoundedAnswer(NamedTuple):
-    """The best answer set that a bounded search found.
+    """The best answer set that a bounded search found."""
 
-    Attributes
-    ----------
-    atoms : its shown atoms, clingo symbols sorted by their text; None when none was found.
-    proved : whether the search ended: then no answer set is better, or there is none.
-    cost : its cost, pairs of level and amount, the highest level first.
-    applied : the users' rules that had an instance, each as `RULES.lp:LINE:COLUMN`.
-    """
-
+    # Its shown atoms, clingo symbols sorted by their text; None when none was found
     atoms: tuple[clingo.Symbol, ...] | None
-    proved: bool
-    cost: tuple[tuple[int, int], ...] = ()
-    applied: tuple[str, ...] = ()
+    proved: bool  # whether the search ended: then no answer set is better, or there is none
+    cost: tuple[tuple[int, int], ...] = ()  # its cost, pairs of level and amount, the highest level first
+    applied: tuple[str, ...] = ()  # the users' rules that had an instance, each as `RULES.lp:LINE:COLUMN`.
 
     def cost_at(self, level: int) -> int:
         """Return the cost at one level; 0 where nothing costs anything there."""
@@ -46,16 +39,7 @@ def all_encodings() -> tuple[Path, ...]:
 
 
 def encoding_path(name: str) -> Path:
-    """Return the path of one of our encodings, a file or a folder.
-
-    Parameters
-    ----------
-    name : its name, without `.lp`.
-
-    Raises
-    ------
-    FileNotFoundError : there is none of that name.
-    """
+    """Return the path of one of our encodings, a file or a folder."""
     found = next((path for path in all_encodings() if path.stem == name), None)  # any text may be asked for
     if found is None:
         raise FileNotFoundError(f"there is no encoding {name}")
@@ -63,50 +47,21 @@ def encoding_path(name: str) -> Path:
 
 
 def encoding_files(encoding: Path) -> tuple[Path, ...]:
-    """Return the files of an encoding, sorted by name.
-
-    A path that is no folder is returned itself if it ends in `.lp`; () for what is no encoding.
-
-    Parameters
-    ----------
-    encoding : a file or a folder of files.
-    """
+    """Return the files of an encoding, sorted by name."""
     if encoding.is_dir():
         return tuple(sorted(encoding.glob(f"*{SUFFIX}")))
     return (encoding,) if encoding.suffix == SUFFIX and encoding.is_file() else ()
 
 
 def encoding_text(encoding: Path) -> str:
-    """Return the text of an encoding: that of its files, one after the other.
-
-    Parameters
-    ----------
-    encoding : a file, or a folder of files.
-
-    Raises
-    ------
-    OSError : a file cannot be read.
-    """
+    """Return the text of an encoding: that of its files, one after the other."""
     files = encoding_files(encoding) or (encoding,)
     return "\n".join(path.read_text(encoding="utf-8") for path in files)
 
 
 @cache
 def encoding_constant(encoding: Path, name: str) -> int:
-    """Return the whole number that an encoding defines with `#const`.
-
-    Parameters
-    ----------
-    encoding : Path
-        The encoding's file or folder; one that does not exist raises OSError.
-    name : str
-        The constant's name, as in `#const name = 13.`
-
-    Raises
-    ------
-    KeyError
-        The encoding defines no such constant.
-    """
+    """Return the whole number that an encoding defines with `#const`."""
     control = clingo.Control()
     control.add("base", [], encoding_text(encoding))
     symbol = control.get_const(name)

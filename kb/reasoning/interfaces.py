@@ -37,18 +37,14 @@ NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a
 
 
 def _name_argument(name: str) -> ArgumentType:
-    """Return the type of plain names (no arguments, no quotes), with its own name for messages.
-
-    The type holds that name, and a check that returns the complaint about a term, or None when the term fits.
-    """
+    """Return the type of plain names (no arguments, no quotes), with its own name for messages."""
+    # The type holds that name, and a check that returns the complaint about a term, or None when the term fits.
     return ArgumentType(name, NAME_ARGUMENT.check)
 
 
 def _number_argument(name: str) -> ArgumentType:
-    """Return the type of numbers from 0 to `MAX_AMOUNT`, with its own name for messages.
-
-    The type holds that name, a check that returns the complaint about a term, or None when it fits, and the limits.
-    """
+    """Return the type of numbers from 0 to `MAX_AMOUNT`, with its own name for messages."""
+    # The type holds that name, a check that returns the complaint about a term, or None when it fits, and the limits.
     return ArgumentType(name, NUMBER_ARGUMENT.check, NUMBER_ARGUMENT.limits)
 
 
@@ -68,10 +64,8 @@ PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1} |
 
 
 def _compound_argument(name: str, plural: str, forms: Mapping[str, int]) -> ArgumentType:
-    """Return the type of terms with one of some names, each with its number of arguments.
-
-    The type holds its own name, and a check that returns the complaint about a term, or None when the term fits.
-    """
+    """Return the type of terms with one of some names, each with its number of arguments."""
+    # The type holds its own name, and a check that returns the complaint about a term, or None when the term fits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it has one of the forms."""

@@ -37,30 +37,19 @@ class QueryLimitError(Exception):
 
 @dataclass(frozen=True)
 class QueryAnswer:
-    """The answer to a query.
+    """The answer to a query."""
 
-    Attributes
-    ----------
-    kind : "bindings", "yes", "no" or "don't know"; "bindings" only for a query with variables.
-    variables : the names of the query's variables, in the order in which they appear.
-    rows : the values of the variables in each binding with which the query certainly holds, in the order of
-        `variables`: integers or terms as text. Sorted; empty unless kind is "bindings".
-    more : whether there are more rows than `rows` holds.
-    types : for each variable the name of the type of the argument in which it stands, such as `a confidence`; '' for
-        none.
-    """
-
-    kind: str
-    variables: tuple[str, ...] = ()
+    kind: str  # "bindings", "yes", "no" or "don't know"; "bindings" only for a query with variables
+    variables: tuple[str, ...] = ()  # the names of the query's variables, in the order in which they appear
+    # The values of the variables in each binding with which the query certainly holds, in the order of `variables`:
+    # integers or terms as text. Sorted; empty unless kind is "bindings".
     rows: tuple[tuple[int | str, ...], ...] = ()
-    more: bool = False
+    more: bool = False  # whether there are more rows than `rows` holds
+    # For each variable the name of the type of the argument in which it stands, such as `a confidence`; '' for none
     types: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        """Return a table of the rows under the names of the variables, or the kind of the answer in words.
-
-        Without a line end at the end; a last line says so when there are more rows.
-        """
+        """Return a table of the rows under the names of the variables, or the kind of the answer in words."""
         if self.kind != "bindings":
             return self.kind
         cells = [list(self.variables), *([str(value) for value in row] for row in self.rows)]
@@ -70,17 +59,7 @@ class QueryAnswer:
 
 
 class QueryEngine:
-    """Answers queries one after another in one separate process; leaving a `with` statement ends the process.
-
-    Parameters
-    ----------
-    seconds : the limit of wall-clock time for each query.
-    rules : the paths of files with users' rules; () for none. Queries can use the predicates that these rules define.
-
-    Attributes
-    ----------
-    seconds : the limit of wall-clock time for each query.
-    """
+    """Answers queries one after another in one separate process; leaving a `with` statement ends the process."""
 
     def __init__(self, seconds: float = MAX_QUERY_SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
@@ -107,17 +86,7 @@ class QueryEngine:
         return self._worker.process_id
 
     def use_rules(self, rules: Sequence[str]) -> None:
-        """Use the rules of these files, and no others, in all further queries.
-
-        Parameters
-        ----------
-        rules : the paths of the files; () for none.
-
-        Raises
-        ------
-        BadInputError : the rules have errors. The former rules are kept.
-        CannotOpenError : a file cannot be read. The former rules are kept.
-        """
+        """Use the rules of these files, and no others, in all further queries."""
         files = tuple(map(str, rules))
         if files == self._files:
             return
@@ -132,25 +101,7 @@ class QueryEngine:
         self._worker.close()
 
     def ask(self, facts: Sequence[str], query: str, max_rows: int = MAX_ANSWER_ROWS) -> QueryAnswer:
-        """Return the answer to a query.
-
-        Parameters
-        ----------
-        facts : the world model, such as `kind(o1,object,95).`, one fact a text, with full stops.
-        query : the body of a rule; `?-` before it and a full stop after it are ignored.
-        max_rows : the greatest number of rows of the answer; further rows are left out.
-
-        Returns
-        -------
-        The answer: its kind ("yes", "no", "don't know", or "bindings" for rows), the names of the query's variables in
-        the order in which they appear, the sorted rows of values (integers, or terms as text) for which the query
-        certainly holds, whether rows were left out, and the types of the variables.
-
-        Raises
-        ------
-        BadInputError : the query, a fact or one of the rules has an error.
-        QueryLimitError : the query takes too much time or memory.
-        """
+        """Return the answer to a query."""
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
         _check_query(text)
         found = self._exchange(facts, {"query": text, "max_rows": max_rows})
@@ -169,13 +120,9 @@ class QueryEngine:
         )
 
     def _exchange(self, facts: Sequence[str], request: dict[str, Any]) -> dict[str, Any]:
-        """Return the worker's response to a query over facts; the facts are sent only when it does not hold them.
-
-        The worker is ended after MAX_QUERIES_PER_WORKER queries: clingo never forgets a name, so it would grow. Raises
-        BadInputError for facts with syntax errors.
-
-        request : the query and the greatest number of rows.
-        """
+        """Return the worker's response to a query over facts; the facts are sent only when it does not hold them."""
+        # The worker is ended after MAX_QUERIES_PER_WORKER queries: clingo never forgets a name, so it would grow.
+        # Raises BadInputError for facts with syntax errors.
         if self._asked >= MAX_QUERIES_PER_WORKER:
             self.close()
         if self._facts != (asked := tuple(facts)):
@@ -191,10 +138,7 @@ class QueryEngine:
 
 
 def request_entries(facts: Sequence[str]) -> list[list[int | str]]:
-    """Return the facts of a world model as the worker takes them; BadInputError when a text is no fact.
-
-    facts : one fact a text, with or without full stops.
-    """
+    """Return the facts of a world model as the worker takes them; BadInputError when a text is no fact."""
     text = "\n".join(fact if fact.rstrip().endswith(".") else f"{fact}." for fact in facts)
     world = parse_facts(source_from_bytes("belief", text.encode("utf-8")))
     return [_request_entry(fact) for fact in world]
@@ -206,12 +150,8 @@ def _request_entry(fact: Fact) -> list[int | str]:
 
 
 def _query_error(text: str, what: str, at: Sequence[int] = (1, 0), hint: str = "") -> BadInputError:
-    """Return the error with the message `what` at a line and column of the query, from 1; at a whole line for column 0.
-
-    The error is returned, not raised; it carries one problem, in a file named "query".
-
-    text : the query. hint : a remedy, or '' for none.
-    """
+    """Return the error with the message `what` at a line and column of the query, from 1."""
+    # At a whole line for column 0.
     lines = text.split("\n")
     number, column = at if at[0] <= len(lines) else (len(lines), 0)  # beyond the end: something is missing at the end
     line = lines[number - 1]
@@ -220,10 +160,7 @@ def _query_error(text: str, what: str, at: Sequence[int] = (1, 0), hint: str = "
 
 
 def _check_query(text: str) -> None:
-    """Raise BadInputError when a text cannot be a query: empty, too long, with comments or with too great integers.
-
-    Its syntax is checked by the worker.
-    """
+    """Raise BadInputError when a text cannot be a query: empty, too long, with comments or with too great integers."""
     if not text:
         raise _query_error(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
     if len(text) > MAX_QUERY_CHARACTERS:

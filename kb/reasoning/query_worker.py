@@ -38,12 +38,7 @@ NO_PLACE_IN_QUERY = (1, 0)  # line and column of an error that concerns the whol
 
 
 class RuleError(Exception):
-    """A user's rule cannot be evaluated.
-
-    Attributes
-    ----------
-    error : the ClauseError; the line of its place is the number of the rule, from 1.
-    """
+    """A user's rule cannot be evaluated."""
 
     def __init__(self, error: ClauseError) -> None:
         self.error = error
@@ -51,13 +46,7 @@ class RuleError(Exception):
 
 
 class QueryError(Exception):
-    """A text is no query.
-
-    Attributes
-    ----------
-    what : the reason.
-    at : line and column in the query, from 1; (1, 0) when unknown.
-    """
+    """A text is no query."""
 
     def __init__(self, what: str, at: tuple[int, int] = NO_PLACE_IN_QUERY) -> None:
         self.what, self.at = what, at
@@ -66,36 +55,15 @@ class QueryError(Exception):
 
 @dataclass(frozen=True)
 class BelievedFacts:
-    """Facts and users' rules, ready for any number of queries.
+    """Facts and users' rules, ready for any number of queries."""
 
-    Attributes
-    ----------
-    beliefs : the facts, and the atoms that the rules derive from them.
-    known : the predicates (name, number of arguments) of which queries can be made.
-    names : the constants in the facts as text, by the name of the argument type.
-    """
-
-    beliefs: Beliefs
-    known: frozenset[Signature]
-    names: ConstantNames
+    beliefs: Beliefs  # the facts, and the atoms that the rules derive from them
+    known: frozenset[Signature]  # the predicates (name, number of arguments) of which queries can be made
+    names: ConstantNames  # the constants in the facts as text, by the name of the argument type
 
 
 def believed_facts(facts: Iterable[Sequence[int | str]], rules: Sequence[str] = ()) -> BelievedFacts:
-    """Return facts together with what users' rules derive from them.
-
-    Parameters
-    ----------
-    facts : of each fact its name and its arguments, integers or terms as text.
-    rules : users' rules, each with one atom as its head, one on a line.
-
-    Returns
-    -------
-    The value that `answer_over` takes.
-
-    Raises
-    ------
-    RuleError : a rule cannot be evaluated.
-    """
+    """Return facts together with what users' rules derive from them."""
     beliefs = Beliefs(_facts(facts))
     signatures = beliefs.signatures()
     defining = _clauses_of_rules(rules)
@@ -110,34 +78,13 @@ def believed_facts(facts: Iterable[Sequence[int | str]], rules: Sequence[str] = 
 def answer_query(
     facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), max_rows: int | None = None
 ) -> Response:
-    """Return the answer to a query over facts; the parameters are those of `believed_facts` and `answer_over`.
-
-    Raises ClauseError, QueryError and RuleError as these do.
-    """
+    """Return the answer to a query over facts; the parameters are those of `believed_facts` and `answer_over`."""
+    # Raises ClauseError, QueryError and RuleError as these do.
     return answer_over(believed_facts(facts, rules), query, max_rows)
 
 
 def answer_over(believed: BelievedFacts, query: str, max_rows: int | None = None) -> Response:
-    """Return the answer to a query over facts and the atoms that rules derive from them.
-
-    Parameters
-    ----------
-    believed : the facts.
-    query : the body of a rule, without a full stop.
-    max_rows : the greatest number of rows that are kept; None for all.
-
-    Returns
-    -------
-    A dictionary of JSON values: "answer" ("bindings", "yes", "no" or "don't know"), "variables" (names, in the order in
-    which they appear), "types" (for each variable the name of the type of the argument in which it stands; '' for
-    none), "rows" (values for which the query certainly holds, integers or terms as text, sorted; [] unless the answer
-    is "bindings") and "more" (whether rows were left out).
-
-    Raises
-    ------
-    ClauseError : the query uses an unknown predicate, constant or construct.
-    QueryError : the text is not one query.
-    """
+    """Return the answer to a query over facts and the atoms that rules derive from them."""
     beliefs = believed.beliefs
     beliefs.join_orders.clear()  # of former queries
     clauses = [rename_utak_to_org(clause) for clause in translate_rule(_query_as_rule(query))]
@@ -163,10 +110,7 @@ def answer_over(believed: BelievedFacts, query: str, max_rows: int | None = None
 
 
 def justify_rules(facts: Iterable[Sequence[int | str]], rules: Sequence[str]) -> Response:
-    """Return the instances of users' rules that certainly hold over facts, as of kb.three_valued.provenance.
-
-    facts, rules : as of `answer_query`. Raises RuleError when a rule cannot be evaluated.
-    """
+    """Return the instances of users' rules that certainly hold over facts, as of kb.three_valued.provenance."""
     beliefs, defining = Beliefs(_facts(facts)), _clauses_of_rules(rules)
     try:
         derive(defining, beliefs)
@@ -176,11 +120,8 @@ def justify_rules(facts: Iterable[Sequence[int | str]], rules: Sequence[str]) ->
 
 
 def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
-    """Return the clauses of rules; the line of each clause is the number of its rule, from 1.
-
-    A clause holds a head atom and the literals of its body. Clauses come in the order of the rules; a rule with a
-    choice of values (a pool) has several. Raises RuleError for a construct that is not supported.
-    """
+    """Return the clauses of rules; the line of each clause is the number of its rule, from 1."""
+    # Raises RuleError for a construct that is not supported.
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
     try:
@@ -190,12 +131,8 @@ def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
 
 
 def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
-    """Return the values of the variables, in their order; raise ClauseError when the query does not bind one of them.
-
-    A value is an integer, a clingo symbol, or an `Unknown` for a value not known.
-
-    found : the values by name. variables : the names. clause : the query, for its place in messages.
-    """
+    """Return the values of the variables, in their order."""
+    # Raise ClauseError when the query does not bind one of them.
     missing = [name for name in variables if name not in found]
     if missing:
         raise unsafe_variable_error(missing[0], clause.at)
@@ -203,19 +140,13 @@ def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
 
 
 def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
-    """Return a key that sorts rows: integers before texts, column by column, both ascending.
-
-    It is a list of pairs (whether the value is a text, the value), one for each value of the row.
-    """
+    """Return a key that sorts rows: integers before texts, column by column, both ascending."""
     return [(isinstance(value, str), value) for value in row]
 
 
 def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
-    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols.
-
-    One pair (predicate, tuple of its arguments) for each entry [name, argument, ...], in their order. Raises
-    RuntimeError for a text that is no term.
-    """
+    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols."""
+    # Raises RuntimeError for a text that is no term.
     for name, *arguments in entries:
         yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)
 
@@ -227,11 +158,8 @@ def _parse_term(term: str) -> clingo.Symbol:
 
 
 def _query_as_rule(query: str) -> AST:
-    """Return the syntax tree of a rule with the query as its body.
-
-    The rule's head is an atom of no meaning. Raises QueryError unless the text is exactly one body, and RuntimeError
-    where clingo cannot parse it.
-    """
+    """Return the syntax tree of a rule with the query as its body."""
+    # Raises QueryError unless the text is exactly one body, and RuntimeError where clingo cannot parse it.
     parts: list[AST] = []
     parse_string(f"{QUERY_HEAD}{query}\n.", parts.append, logger=_record_message, message_limit=20)
     if len(parts) != 2 or parts[1].ast_type != ASTType.Rule:
@@ -247,10 +175,7 @@ def _json_value(term: Value) -> int | str:
 
 
 def _record_message(code: clingo.MessageCode, message: str) -> None:
-    """Append a message of clingo's to `_messages`, as a QueryError whose place counts from the start of the query.
-
-    code : clingo's kind of the message, which is not used. A message without a place gets NO_PLACE_IN_QUERY.
-    """
+    """Append a message of clingo's to `_messages`, as a QueryError whose place counts from the start of the query."""
     place, _, what = message.partition(": error: ")
     if not what:
         place, _, what = message.partition(": info: ")
@@ -271,10 +196,7 @@ _held: list[tuple[int, BelievedFacts]] = []  # the facts of the last request, wi
 
 
 def _held_facts(request: dict[str, Any]) -> BelievedFacts | None:
-    """Return the facts of a request, or those with its number that are held; None when these are not held.
-
-    Facts of a request are held until other ones come.
-    """
+    """Return the facts of a request, or those with its number that are held; None when these are not held."""
     number = request.get("number", 0)
     if "facts" in request:
         _held.clear()
@@ -283,14 +205,7 @@ def _held_facts(request: dict[str, Any]) -> BelievedFacts | None:
 
 
 def _respond(line: bytes) -> Response:
-    """Return the response to one request, a line of JSON: JSON values by key, never an exception.
-
-    A request with "read" has the response of `read_rule_text`, one with "justify" that of `justify_rules`, one
-    with "trace" that of kb.tracing.requests, one with "program" that of `solve_with_rules`, any other that of
-    `answer_over`; {"unknown": number} when it has no facts, and those with its number are not held. An error is
-    {"error": message, "at": [line, column] or [1, 0], "hint"}, with "rule" (index from 0) in the place of "at" for an
-    error in a rule; {"limit": reason} when memory runs out.
-    """
+    """Return the response to one request, a line of JSON: JSON values by key, never an exception."""
     _messages.clear()
     try:
         request = json.loads(line)
@@ -324,13 +239,7 @@ def _respond(line: bytes) -> Response:
 
 
 def main() -> None:
-    """Answer requests until the standard input ends; then end at once.
-
-    Each request is a line of JSON on the standard input. Its answer is a line of JSON on the standard output, an error
-    likewise (see `_respond`).
-
-    The first line that is written is `ready`.
-    """
+    """Answer requests until the standard input ends; then end at once."""
     operating_system.end_with_parent()
     operating_system.limit_resource("AS", MAX_MEMORY_BYTES)
     operating_system.limit_resource("CORE", 0)

@@ -45,28 +45,7 @@ class RuleSyntaxError(Exception):
 
 
 def read_statements(text: str, renamed: Collection[Signature] = ()) -> list[dict[str, Any]]:
-    """Return the statements of a rule file that have an effect, in order.
-
-    Parameters
-    ----------
-    text : the whole file.
-    renamed : predicates of the user's own that get another name in "text" and "condition", where encodings have one of
-        that name that is none of the user's business.
-
-    Returns
-    -------
-    One dictionary of JSON values for each rule, `#minimize`, weak constraint and `#defined`: "at" (line and column,
-    from 1), "heads" (the atoms stated or chosen) and "body" (those on which they depend), lists of dictionaries with
-    the keys name, arity, at, constants, places and negative; "text" (the statement with checked arithmetic), "written"
-    (as the user wrote it, constants replaced), "condition" (its body alone, as in "text"), "plain" (whether it is a
-    rule with one atom, not negated, as its head), "variables" (the names of its global variables) and "declares"
-    ([name, number of arguments] of a `#defined`, else None). Other statements are left out.
-
-    Raises
-    ------
-    ClauseError : a statement is not allowed in users' rules.
-    RuleSyntaxError : clingo cannot parse the text.
-    """
+    """Return the statements of a rule file that have an effect, in order."""
     messages: list[str] = []
     found: list[AST] = []
     try:
@@ -89,12 +68,7 @@ def _kept(node: AST) -> bool:
 
 
 def _entry(node: AST, names: "_OwnNames") -> dict[str, Any]:
-    """Return a statement as a dictionary of JSON values.
-
-    The keys are at, heads, body, text, written, condition, plain, variables and declares (see `read_statements`): its
-    place, the atoms that it states, those on which they depend, the statement with checked arithmetic and as written,
-    its body, whether its head is one atom, its global variables, and the predicate of a `#defined` or None.
-    """
+    """Return a statement as a dictionary of JSON values."""
     if node.ast_type == ASTType.Defined:
         entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "condition": ""}
         return entry | {"plain": False, "variables": [], "declares": [node.name, node.arity]}
@@ -123,11 +97,8 @@ def _is_plain(node: AST) -> bool:
 
 
 def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
-    """Return the literals that a head states or chooses, and the literals (conditions) on which they depend.
-
-    Two lists of parts of clingo's syntax tree, each in the order of the text; the second is [] for a plain head. Raises
-    ClauseError for a theory atom.
-    """
+    """Return the literals that a head states or chooses, and the literals (conditions) on which they depend."""
+    # Raises ClauseError for a theory atom.
     if head.ast_type == ASTType.Literal:
         return [head], []
     if head.ast_type not in (ASTType.Aggregate, ASTType.Disjunction, ASTType.HeadAggregate):
@@ -141,13 +112,11 @@ def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
 
 
 def _atoms(node: AST) -> Iterator[dict[str, Any]]:
-    """Yield the atoms in a part of a statement, each as a dictionary of JSON values, in the order of the text.
-
-    The keys are "name" (the predicate), "arity" (the number of arguments), "at" (line and column, from 1), "constants"
-    (the text of each argument that is a constant, None for any other), "places" (line and column of each argument),
-    "forms" (name and number of arguments of each argument that is a compound term, None for any other) and "negative"
-    (whether it is negated, or stands in an aggregate or a condition).
-    """
+    """Yield the atoms in a part of a statement, each as a dictionary of JSON values, in the order of the text."""
+    # The keys are "name" (the predicate), "arity" (the number of arguments), "at" (line and column, from 1),
+    # "constants" (the text of each argument that is a constant, None for any other), "places" (line and column of each
+    # argument), "forms" (name and number of arguments of each argument that is a compound term, None for any other) and
+    # "negative" (whether it is negated, or stands in an aggregate or a condition).
     reader = _AtomCollector()
     reader.visit(node)
     yield from reader.found
@@ -160,15 +129,7 @@ def _form(term: AST) -> tuple[str, int] | None:
 
 
 class _AtomCollector(Transformer):
-    """Collects atoms. An atom in an aggregate or in a condition counts as negated.
-
-    clingo calls the `visit` methods; each returns its node, which stays as it is.
-
-    Attributes
-    ----------
-    found : the atoms as dictionaries of JSON values, in the order of the text; it grows.
-    negative : whether the part that is visited now is negated.
-    """
+    """Collects atoms. An atom in an aggregate or in a condition counts as negated."""
 
     def __init__(self) -> None:
         self.found: list[dict[str, Any]] = []
@@ -221,10 +182,7 @@ class _AtomCollector(Transformer):
 
 
 def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
-    """Return the values of `#const` definitions, numbers and names, by name; raise ClauseError for any other value.
-
-    `nodes` are all statements of a file; the last definition of a name counts. {} when there is none.
-    """
+    """Return the values of `#const` definitions, numbers and names, by name; raise ClauseError for any other value."""
     found = {}
     for node in nodes:
         if node.ast_type == ASTType.Definition:
@@ -267,20 +225,14 @@ class _OwnNames(Transformer):
 
 
 class _ArithmeticRewriter(Transformer):
-    """Replaces arithmetic by calls of the calculator, `@calculated(sign, place, operands)`.
-
-    clingo calls the `visit` methods, each of which returns what stands in the place of its node.
-    """
+    """Replaces arithmetic by calls of the calculator, `@calculated(sign, place, operands)`."""
 
     def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         """Return the call that computes an operation on two terms: a term `@calculated(sign, place, left, right)`."""
         return self._call(node, BINARY_SIGNS[node.operator_type], [self.visit(node.left), self.visit(node.right)])
 
     def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return the call that computes an operation on one term, `@calculated(sign, place, operand)`.
-
-        A negative number stays as it is.
-        """
+        """Return the call that computes an operation on one term, `@calculated(sign, place, operand)`."""
         if node.argument.ast_type == ASTType.SymbolicTerm:
             number = node.argument.symbol
             if UNARY_SIGNS[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
@@ -288,20 +240,15 @@ class _ArithmeticRewriter(Transformer):
         return self._call(node, UNARY_SIGNS[node.operator_type], [self.visit(node.argument)])
 
     def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return a term whose arguments have calls of the calculator in the places of their arithmetic.
-
-        Raises ClauseError for a function of Python (@name).
-        """
+        """Return a term whose arguments have calls of the calculator in the places of their arithmetic."""
+        # Raises ClauseError for a function of Python (@name).
         if node.external:
             raise ClauseError("operation undefined: there are no functions from outside", place_of(node))
         return node.update(**self.visit_children(node))
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return an aggregate whose arithmetic is replaced by calls of the calculator, in the same places.
-
-        Each operation in its guards, tuples and conditions becomes a term `@calculated(sign, place, operands)`. Raises
-        ClauseError for a sum that is given to a variable, `X = #sum{...}`.
-        """
+        """Return an aggregate whose arithmetic is replaced by calls of the calculator, in the same places."""
+        # Raises ClauseError for a sum that is given to a variable, `X = #sum{...}`.
         summed = node.function in (AggregateFunction.Sum, AggregateFunction.SumPlus)
         guards = [guard for guard in (node.left_guard, node.right_guard) if guard is not None]
         given = [guard.term for guard in guards if guard.comparison == ComparisonOperator.Equal]
@@ -311,13 +258,7 @@ class _ArithmeticRewriter(Transformer):
         return node.update(**self.visit_children(node))
 
     def _call(self, node: AST, sign: str, parts: list[AST]) -> AST:
-        """Return the call that computes an operation; it carries the place of the operation.
-
-        It is the term `@calculated(sign, (line, column), operands)`, which clingo evaluates by `Calculator.calculated`
-        while it grounds the rule.
-
-        node : the operation. sign : its operator in ASP syntax. parts : its one or two operands, rewritten already.
-        """
+        """Return the call that computes an operation; it carries the place of the operation."""
         line, column = place_of(node)
         call_site = [SymbolicTerm(node.location, value) for value in (clingo.String(sign), _place_term(line, column))]
         return Function(node.location, "calculated", [*call_site, *parts], 1)
@@ -334,25 +275,14 @@ def _place_term(line: int, column: int) -> clingo.Symbol:
 
 
 class Calculator:
-    """The arithmetic of rules; clingo calls `calculated` while it grounds a program.
-
-    Attributes
-    ----------
-    error : the first error, with its line and column; None while there is none.
-    """
+    """The arithmetic of rules; clingo calls `calculated` while it grounds a program."""
 
     def __init__(self) -> None:
         self.error: ClauseError | None = None
 
     def calculated(self, sign: clingo.Symbol, at: clingo.Symbol, *parts: clingo.Symbol) -> list[clingo.Symbol]:
-        """Return a list with the result of an operation, a number; [] when it has none, after recording the error.
-
-        It has none for an operand that is no number, for a division by zero, and beyond 32 bits.
-
-        sign : the operator in ASP syntax, as a string.
-        at : the place (line, column), from 1.
-        parts : one or two operands, the left one first.
-        """
+        """Return a list with the result of an operation, a number; [] when it has none, after recording the error."""
+        # It has none for an operand that is no number, for a division by zero, and beyond 32 bits.
         place = (at.arguments[0].number, at.arguments[1].number)
         strange = [part for part in parts if part.type != clingo.SymbolType.Number]
         try:

@@ -14,14 +14,7 @@ MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those
 
 
 def read_rule_text(text: str, renamed: Sequence[Sequence[Any]] = ()) -> Response:
-    """Return the statements of a rule file: {"statements": [...]}, dictionaries as of `read_statements`.
-
-    One dictionary for each statement that has an effect, in the order of the text.
-
-    text : the whole file. renamed : [name, number of arguments] of the predicates that get another name.
-
-    An error is returned as {"message": clingo's message}, or as {"error": message, "at": (line, column), "hint"}.
-    """
+    """Return the statements of a rule file: {"statements": [...]}, dictionaries as of `read_statements`."""
     try:
         return {"statements": read_statements(text, {(str(name), int(count)) for name, count in renamed})}
     except RuleSyntaxError as error:
@@ -39,30 +32,7 @@ def solve_with_rules(
     conflicts: int,
     conditions: Sequence[str] = (),
 ) -> Response:
-    """Return the best answer set of an encoding together with users' rules.
-
-    Parameters
-    ----------
-    program : the text of the encoding and its facts.
-    rules : the text of each rule, with checked arithmetic.
-    heads : [name, number of arguments] of the predicates whose derived atoms are returned.
-    conflicts : the limit of the search, in conflicts of clingo's; 0 to ground only, which tests whether everything can
-        be computed.
-    conditions : the body of each rule, with checked arithmetic; '' for none.
-
-    Returns
-    -------
-    One of these dictionaries; atoms are texts, rules are numbered from 0:
-
-    - {"atoms": shown atoms of the best answer set, "derived": all atoms of `heads` that some answer set may hold,
-      "cost": pairs of level and amount, "proved": whether the search ended, "applied": numbers of rules}: those whose
-      body may hold, by what was grounded
-    - {} when nothing was searched and no error occurred
-    - {"message": clingo's message}, with line numbers from 1 that count the rules
-    - {"error": message, "at": (line, column), "rule": number} for an error of arithmetic
-    - {"cut": conflicts, "applied"} when the search reached the limit before there was an answer
-    - {"against": numbers of rules, "applied"} that together leave no answer
-    """
+    """Return the best answer set of an encoding together with users' rules."""
     rules = [" ".join(rule.split("\n")) for rule in rules]
     for options in (CORE_GUIDED, ()):  # the same search as without users' rules
         control, failed = _grounded(program, rules, options)
@@ -108,14 +78,7 @@ def _instances(control: clingo.Control) -> list[int]:
 def _grounded(
     program: str, rules: Sequence[str], options: Sequence[str] = ()
 ) -> tuple[clingo.Control, Response | None]:
-    """Return the grounded program, and the response to an error or None when there is none.
-
-    The program is clingo's control object, ready to be solved when the second value is None. The response is
-    {"message": clingo's message}, or {"error": message, "at": (line, column), "rule": number from 0} for arithmetic
-    without a result.
-
-    program : the text of the encoding and its facts. rules : the text of each rule, one line each. options : of clingo.
-    """
+    """Return the grounded program, and the response to an error or None when there is none."""
     messages: list[str] = []
     calculator = Calculator()
     control = clingo.Control([*options], logger=lambda _code, text: messages.append(text), message_limit=20)
@@ -135,12 +98,8 @@ def _grounded(
 
 
 def _conflicting_rules(program: str, rules: Sequence[str]) -> list[int]:
-    """Return the numbers, from 0, of rules that together leave no answer; without any one of them there is an answer.
-
-    The numbers are ascending. Of several such sets the one that is left when rules are left out in turn, from the last
-    one tested to the first. Only the first `MAX_RULES_TRIED` rules are tested; the numbers of later rules are all
-    returned. [0] when the program has no answer without any rule either.
-    """
+    """Return the numbers, from 0, of rules that together leave no answer."""
+    # Without any one of them there is an answer.
     left = list(range(len(rules)))
     for number in range(min(len(rules), MAX_RULES_TRIED) - 1, -1, -1):
         fewer = [other for other in left if other != number]

@@ -56,24 +56,15 @@ INTERFACE_PREDICATES = frozenset(signature for known in PREDICATES_BY_ENCODING.v
 
 @dataclass(frozen=True)
 class RuleAtom:
-    """An atom in a rule.
+    """An atom in a rule."""
 
-    Attributes
-    ----------
-    name : the name of the predicate.
-    constants : of each argument its text when it is a constant, else None.
-    at : line and column of the atom, from 1.
-    places : line and column of each argument, from 1.
-    forms : of each argument its name and number of arguments when it is a compound term, else None.
-    negative : whether `not` stands before the atom, or it stands in an aggregate or a condition.
-    """
-
-    name: str
-    constants: tuple[str | None, ...]
-    at: tuple[int, int]
-    places: tuple[tuple[int, int], ...]
+    name: str  # the name of the predicate
+    constants: tuple[str | None, ...]  # of each argument its text when it is a constant, else None
+    at: tuple[int, int]  # line and column of the atom, from 1
+    places: tuple[tuple[int, int], ...]  # line and column of each argument, from 1
+    # Of each argument its name and number of arguments when it is a compound term, else None
     forms: tuple[tuple[str, int] | None, ...]
-    negative: bool
+    negative: bool  # whether `not` stands before the atom, or it stands in an aggregate or a condition
 
     @property
     def signature(self) -> Signature:
@@ -83,33 +74,19 @@ class RuleAtom:
 
 @dataclass(frozen=True)
 class Statement:
-    """A statement of a rule file.
+    """A statement of a rule file."""
 
-    Attributes
-    ----------
-    source : the text of the file.
-    at : line and column of the statement, from 1.
-    heads : the atoms that it states or chooses.
-    body : the atoms on which these depend.
-    text : the statement as clingo gets it, with checked arithmetic.
-    written : the statement as the user wrote it, with constants replaced.
-    condition : its body as clingo gets it; '' where it has none.
-    is_single_atom_rule : whether it is a rule with one atom as its head.
-    declares : the predicate (name, number of arguments) of a `#defined`, which states nothing; None for other
-        statements.
-    variables : the names of its global variables, in the order of the text.
-    """
-
-    source: Source
-    at: tuple[int, int]
-    heads: tuple[RuleAtom, ...]
-    body: tuple[RuleAtom, ...]
-    text: str
-    written: str
-    condition: str
-    is_single_atom_rule: bool
+    source: Source  # the text of the file
+    at: tuple[int, int]  # line and column of the statement, from 1
+    heads: tuple[RuleAtom, ...]  # the atoms that it states or chooses
+    body: tuple[RuleAtom, ...]  # the atoms on which these depend
+    text: str  # the statement as clingo gets it, with checked arithmetic
+    written: str  # the statement as the user wrote it, with constants replaced
+    condition: str  # its body as clingo gets it; '' where it has none
+    is_single_atom_rule: bool  # whether it is a rule with one atom as its head
+    # The predicate (name, number of arguments) of a `#defined`, which states nothing; None for other statements
     declares: Signature | None
-    variables: tuple[str, ...]
+    variables: tuple[str, ...]  # the names of its global variables, in the order of the text
 
     @property
     def place(self) -> str:
@@ -122,24 +99,13 @@ class Statement:
         return f"{self.source.file}:{self.at[0]}"
 
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
-        """Return the problem `what` at the statement's place, or at another line and column (from 1).
-
-        The problem carries the file's name, a place of one column, the message and the source line; it is not raised.
-
-        hint : a remedy, or '' for none.
-        """
+        """Return the problem `what` at the statement's place, or at another line and column (from 1)."""
         line, column = at or self.at
         return self.source.problem(SourceSpan(line, column, column), what, hint)
 
 
 def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
-    """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader.read_statements).
-
-    It holds the source, the place (line, column, from 1), the atoms that it states and those on which they depend, its
-    text with checked arithmetic and as written, whether its head is one atom, what it declares, and its variables.
-
-    source : the text of the file. entry : one of the dictionaries, with the keys of that function.
-    """
+    """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader.read_statements)."""
     heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
     declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
     return Statement(
@@ -157,11 +123,7 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
 
 
 def _atom(entry: Mapping[str, Any]) -> RuleAtom:
-    """Return an atom from the JSON values of the worker: name, constants, at, places, forms, negative.
-
-    It holds the predicate, the text of each argument that is a constant (else None), its place and those of its
-    arguments (line, column, from 1), and whether it is negated.
-    """
+    """Return an atom from the JSON values of the worker: name, constants, at, places, forms, negative."""
     line, column = entry["at"]
     places = tuple((place[0], place[1]) for place in entry["places"])
     forms = tuple(None if form is None else (form[0], form[1]) for form in entry["forms"])
@@ -169,22 +131,7 @@ def _atom(entry: Mapping[str, Any]) -> RuleAtom:
 
 
 class Rulebook:
-    """The rules of all files of a user together.
-
-    Parameters
-    ----------
-    statements : the statements of all files, in order, those of `#defined` included.
-
-    Attributes
-    ----------
-    statements : the statements that state something, a tuple in order.
-    own_predicates : the predicates that only these rules define, a set of (name, number of arguments).
-
-    Raises
-    ------
-    BadInputError : a rule uses an unknown or forbidden predicate, an impossible constant, or has no effect; carries all
-        such problems.
-    """
+    """The rules of all files of a user together."""
 
     def __init__(self, statements: Sequence[Statement]) -> None:
         self.statements = tuple(one for one in statements if one.declares is None)
@@ -206,29 +153,17 @@ class Rulebook:
         return frozenset(named | self._declared)
 
     def rules_reaching(self, encoding: str) -> tuple[Statement, ...]:
-        """Return the rules that take part in an encoding, in the order of the files; () for none.
-
-        A rule takes part where all its predicates are known: those of the encoding, and those of the user's own that
-        rules define there. () also for a name that is no encoding.
-
-        encoding : the name of the encoding without `.lp`, or "belief" for the facts that queries read.
-        """
+        """Return the rules that take part in an encoding, in the order of the files; () for none."""
         return self._counting.get(encoding, ())
 
     @property
     def self_contained(self) -> tuple[Statement, ...]:
-        """The rules that depend on no predicate but those that they define themselves, in the order of the files.
-
-        () when there are none. They state only predicates of the user's own.
-        """
+        """The rules that depend on no predicate but those that they define themselves, in the order of the files."""
         return self._applicable(frozenset(), frozenset())
 
     @property
     def query_rules(self) -> tuple[Statement, ...]:
-        """The rules over the world model with one atom as the head, a predicate of the user's own.
-
-        Queries can use the predicates that they define. In the order of the files; () when there are none.
-        """
+        """The rules over the world model with one atom as the head, a predicate of the user's own."""
         return tuple(
             one
             for one in self.rules_reaching(QUERY_INTERFACE)
@@ -236,11 +171,7 @@ class Rulebook:
         )
 
     def _invalid_parts(self, one: Statement) -> Iterator[Problem]:
-        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants.
-
-        A problem is the file, the place, the message, the source line and a hint. Unreachable predicates come first,
-        then unknown ones in the body, then the problems of its heads.
-        """
+        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants."""
         for atom in (*one.heads, *one.body):
             if (
                 atom.signature in INTERNAL_PREDICATES
@@ -267,13 +198,7 @@ class Rulebook:
                 yield one.problem(*_unknown(atom, INTERFACE_PREDICATES))
 
     def _is_misspelt(self, atom: RuleAtom, one: Statement) -> bool:
-        """Return whether a head states a predicate that rules may state, with a wrong number of arguments.
-
-        A predicate that rules use, too, is the user's own, whatever its name; so is one whose name is known only in
-        encodings that the rule does not speak of.
-
-        atom : the head. one : its statement.
-        """
+        """Return whether a head states a predicate that rules may state, with a wrong number of arguments."""
         if atom.signature not in self.own_predicates or atom.signature in self._used:
             return False
         spoken = {other.signature for other in one.body} & INTERFACE_PREDICATES
@@ -281,10 +206,8 @@ class Rulebook:
         return any(atom.name == name for names in known for name, _ in names - READ_ONLY_PREDICATES)
 
     def _unknown_steps(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
-        """Yield the problems of steps and activities in an atom of a body that no encoding knows: the atom never holds.
-
-        one : the statement. atom : one of the atoms of its body.
-        """
+        """Yield the problems of steps and activities in an atom of a body that no encoding knows."""
+        # The atom never holds.
         options = [types[atom.signature] for types in USER_RULE_INTERFACES.values() if atom.signature in types]
         for number, place in enumerate(atom.places):
             form, constant = atom.forms[number], atom.constants[number]
@@ -298,13 +221,7 @@ class Rulebook:
                 yield one.problem(f"unknown {' or '.join(sorted(kinds))} {name}/{count}", place, hint)
 
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
-        """Yield the problems of constants in a head atom that no encoding accepts at their place.
-
-        One for each such constant, at its place, in the order of the arguments. A number of a neck or a corner is
-        always one: they are numbered anew each time.
-
-        one : the statement. atom : one of its head atoms.
-        """
+        """Yield the problems of constants in a head atom that no encoding accepts at their place."""
         options = [
             interface[atom.signature] for interface in USER_RULE_INTERFACES.values() if atom.signature in interface
         ]
@@ -319,10 +236,7 @@ class Rulebook:
                     yield one.problem(complaints[0].what, atom.places[number], complaints[0].hint)
 
     def _taking_part(self, encoding: str) -> tuple[Statement, ...]:
-        """Return the statements that take part in an encoding.
-
-        Conditions on nothing but the world model bind the task plan alone.
-        """
+        """Return the statements that take part in an encoding."""
         known, world = PREDICATES_BY_ENCODING[encoding], WORLD_FACTS_THERE.get(encoding, frozenset())
         found = self._applicable(known | world, READ_ONLY_THERE.get(encoding, frozenset()) | world)
         if not world or encoding == "task":
@@ -331,21 +245,12 @@ class Rulebook:
         return tuple(one for one in found if one.heads or one not in of_world)
 
     def world_facts_named(self, encoding: str) -> frozenset[Signature]:
-        """Return the predicates of the world model that rules name which take part in an encoding without them.
-
-        encoding : its name without `.lp`.
-        """
+        """Return the predicates of the world model that rules name which take part in an encoding without them."""
         named = {atom.signature for one in self.rules_reaching(encoding) for atom in one.body}
         return WORLD_FACTS_THERE.get(encoding, frozenset()) & named
 
     def _applicable(self, known: frozenset[Signature], read_only: frozenset[Signature]) -> tuple[Statement, ...]:
-        """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself.
-
-        In the order of the files; () when none remains. Predicates of `#defined` count as defined.
-
-        known : the predicates (name, number of arguments) that exist without these statements.
-        read_only : those of them that no rule derives.
-        """
+        """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself."""
         found = self.statements
         while True:
             defined = {atom.signature for one in found for atom in one.heads} & self.own_predicates | self._declared
@@ -357,22 +262,12 @@ class Rulebook:
     def _counts(
         self, one: Statement, known: frozenset[Signature], defined: set[Signature], read_only: frozenset[Signature]
     ) -> bool:
-        """Return whether all predicates of a statement count.
-
-        Those of its heads must be in `known` or the user's own, those of its body in `known` or in `defined`.
-
-        known : the predicates (name, number of arguments) of an encoding.
-        defined : the user's own predicates that the statements under consideration define.
-        read_only : predicates of the encoding that no rule derives.
-        """
+        """Return whether all predicates of a statement count."""
         stated = all(atom.signature in known - read_only or atom.signature in self.own_predicates for atom in one.heads)
         return stated and all(atom.signature in known | defined for atom in one.body)
 
     def _without_effect(self, one: Statement) -> Iterator[Problem]:
-        """Yield one problem, why a statement has no effect in any encoding and in no query; nothing when it has one.
-
-        A problem is the file, the place, the message, the source line and a hint.
-        """
+        """Yield one problem, why a statement has no effect in any encoding and in no query; nothing when it has one."""
         where = [name for name in PREDICATES_BY_ENCODING if one in self._counting[name]]
         if not where:
             names = sorted(
@@ -393,10 +288,7 @@ def _form(signature: Signature) -> str:
 
 
 def _unknown(atom: RuleAtom, known: Iterable[Signature]) -> tuple[str, tuple[int, int], str]:
-    """Return message, place (line, column) and hint for an atom whose predicate does not exist.
-
-    known : the predicates that exist, of which the hint names the most similar one.
-    """
+    """Return message, place (line, column) and hint for an atom whose predicate does not exist."""
     known = set(known)
     forms = sorted(_form(other) for other in known if other[0] == atom.name)
     hint = f"there is {', '.join(forms)}" if forms else did_you_mean(atom.name, {name for name, _ in known})
@@ -404,14 +296,7 @@ def _unknown(atom: RuleAtom, known: Iterable[Signature]) -> tuple[str, tuple[int
 
 
 def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Sequence[Fact]]) -> str:
-    """Return the reason why an encoding cannot take an atom that users' rules derived; '' when it can.
-
-    Parameters
-    ----------
-    encoding : the name of the encoding without `.lp`.
-    atom : the derived atom; its predicate belongs to the interface of the encoding.
-    given : the facts that the encoding gets, by predicate (name, number of arguments).
-    """
+    """Return the reason why an encoding cannot take an atom that users' rules derived; '' when it can."""
     types = USER_RULE_INTERFACES[encoding][atom.signature]
     for type_, term in zip(types, atom.args, strict=True):
         complaint = type_.check(term)
@@ -423,8 +308,5 @@ def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Seque
 
 
 def _domain(type_: ArgumentType, given: Mapping[Signature, Sequence[Fact]]) -> set[str]:
-    """Return the names of all things of a kind that given facts mention.
-
-    type_ : an argument type whose name is in DEFINING_FACTS. given : facts by predicate (name, number of arguments).
-    """
+    """Return the names of all things of a kind that given facts mention."""
     return {str(fact.args[at]) for signature, at in DEFINING_FACTS[type_.name] for fact in given.get(signature, ())}

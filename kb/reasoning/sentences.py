@@ -28,33 +28,20 @@ Place = tuple[int, int]  # line and column, from 1
 
 
 class PredicateWords(NamedTuple):
-    """The words of a predicate.
+    """The words of a predicate."""
 
-    Attributes
-    ----------
-    name : its name.
-    variables : the names of its arguments, which are placeholders in the texts.
-    holds : the text where an atom holds.
-    absent : the text where none is known to hold; '' when there is none.
-    """
-
-    name: str
-    variables: tuple[str, ...]
-    holds: str
-    absent: str
+    name: str  # its name
+    variables: tuple[str, ...]  # the names of its arguments, which are placeholders in the texts
+    holds: str  # the text where an atom holds
+    absent: str  # the text where none is known to hold; '' when there is none
 
 
 class RuleWords(NamedTuple):
-    """The sentences of a file.
+    """The sentences of a file."""
 
-    Attributes
-    ----------
-    sentences : the sentence of each rule that has one, by the line and column at which the rule begins.
-    predicates : how predicates read, by (name, number of arguments).
-    """
-
+    # The sentence of each rule that has one, by the line and column at which the rule begins
     sentences: Mapping[Place, str]
-    predicates: Mapping[tuple[str, int], PredicateWords]
+    predicates: Mapping[tuple[str, int], PredicateWords]  # how predicates read, by (name, number of arguments)
 
 
 class _Annotation(NamedTuple):
@@ -75,19 +62,7 @@ class _Stretch(NamedTuple):
 def read_sentences(
     source: Source, statements: Iterable[tuple[Place, Sequence[str]]]
 ) -> tuple[RuleWords, tuple[Problem, ...]]:
-    """Return the sentences of a rule file, and the problems of its annotations.
-
-    Parameters
-    ----------
-    source : the text of the file, which clingo can parse.
-    statements : of each rule, constraint and weak constraint the line and column at which it begins, and the names of
-        its global variables.
-
-    Returns
-    -------
-    The sentences, and a problem for each annotation that is not well formed, has no rule behind it or names a variable
-    that the rule does not have.
-    """
+    """Return the sentences of a rule file, and the problems of its annotations."""
     reader = _SentenceReader(source)
     known = dict(statements)
     for stretch in _stretches(source, reader):
@@ -98,8 +73,6 @@ def read_sentences(
 
 def fill(template: str, values: Mapping[str, str]) -> str:
     """Return a text with its placeholders replaced by values; a placeholder without a value reads `some`.
-
-    A number in tenths or hundredths, as of `{N/10}`, is shown as a decimal number without zeros at its end.
 
     Examples
     --------
@@ -126,14 +99,7 @@ def _shown(value: str, divisor: str | None) -> str:
 
 
 class _SentenceReader:
-    """Reads annotations, and collects sentences, predicates' words and problems.
-
-    Attributes
-    ----------
-    source : the text of the file.
-    sentences, predicates : see `RuleWords`; they grow.
-    problems : the problems found so far; it grows.
-    """
+    """Reads annotations, and collects sentences, predicates' words and problems."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -146,11 +112,7 @@ class _SentenceReader:
         self.problems.append(self.source.problem(span, what, hint))
 
     def read_before(self, found: Sequence[_Annotation], inside: Mapping[Place, Sequence[str]]) -> None:
-        """Read the annotations before a statement.
-
-        inside : the places and global variables of the rules that the statement consists of; empty for a directive and
-            for the end of the file.
-        """
+        """Read the annotations before a statement."""
         sentence: str | None = None
         for one in found:
             word = one.text.split(maxsplit=1)[0] if one.text.strip() else ""
@@ -197,10 +159,7 @@ class _SentenceReader:
         self.predicates[form[1], len(variables)] = PredicateWords(form[1], variables, strings[0][0], absent)
 
     def _strings(self, one: _Annotation, begin: int) -> tuple[list[tuple[str, int]], str]:
-        """Return the strings of an annotation from a character on, each with its index; and what stands beside them.
-
-        Strings that are separated by blanks alone are one string.
-        """
+        """Return the strings of an annotation from a character on, each with its index; and what stands beside them."""
         found: list[tuple[str, int]] = []
         rest, at = "", begin
         for match in STRING.finditer(one.text, begin):
@@ -223,10 +182,7 @@ class _SentenceReader:
         return True
 
     def _check_placeholders(self, one: _Annotation, text: str, at: int, names: set[str], unknown: str) -> None:
-        """Append a problem for each placeholder of a text that is not among `names`, and for each other brace.
-
-        at : the index of the text's string in the annotation. unknown : the message, `{}` for the variable.
-        """
+        """Append a problem for each placeholder of a text that is not among `names`, and for each other brace."""
         for match in PLACEHOLDER.finditer(text):
             if match[1] not in names:
                 span = self._place(one, max(0, one.text.find(match.group(), at)), len(match.group()))
@@ -250,10 +206,7 @@ class _SentenceReader:
 
 
 def _stretches(source: Source, reader: _SentenceReader) -> Iterable[_Stretch]:
-    """Return the statements of a text in order, each with the annotations before it; the last one is the file's end.
-
-    An annotation within a statement is a problem, which the reader gets.
-    """
+    """Return the statements of a text in order, each with the annotations before it; the last one is the file's end."""
     found: list[_Stretch] = []
     waiting: list[_Annotation] = []
     statement: list[Token] = []

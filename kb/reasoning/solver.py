@@ -24,32 +24,7 @@ class EncodingError(Exception):
 def solve(
     files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0, about: Sequence[Any] = ()
 ) -> list[clingo.Symbol] | None:
-    """Return the shown atoms of the best answer set found.
-
-    The same files and facts are answered from a cache: an answer depends on nothing else. Each answer is noted in the
-    record of kb.tracing.decisions that is open, if one is.
-
-    Parameters
-    ----------
-    files : paths of encodings (kb.reasoning.encodings), and of files with users' rules: these are all files outside of
-        ENCODING_FOLDERS.
-    facts : atoms as text, without a full stop.
-    seconds : the limit of wall-clock time of the search, after which the best answer so far is returned. With users'
-        rules the limits of kb.reasoning.user_rules count instead.
-    about : what the candidates of the decision are, by their number in the facts, ready for JSON; for the record alone.
-
-    Returns
-    -------
-    The atoms, clingo symbols sorted by their text; None when there is no answer set, or none was found in time. The
-    best answer set is the one with the least cost, or the last one found in time; among equals the one that clingo
-    finds.
-
-    Raises
-    ------
-    EncodingError : clingo gives any message.
-    BadInputError : users' rules cause an error.
-    CannotOpenError : a file with users' rules cannot be read.
-    """
+    """Return the shown atoms of the best answer set found."""
     given = tuple(facts)
     answer = _answer(tuple(files), given, seconds, None, _versions(files))
     note_answer(files, given, answer.atoms, about)
@@ -64,20 +39,7 @@ def solve_within(
     about: Sequence[Any] = (),
     without: tuple[str, ...] = (),
 ) -> BoundedAnswer:
-    """Return the best answer set that is found within a number of conflicts, which is the same on every machine.
-
-    With users' rules the limit of time of kb.reasoning.user_rules counts, too. Rules that leave no answer are no error.
-
-    Parameters
-    ----------
-    files, facts, about : as for `solve`.
-    conflicts : the number of conflicts of clingo's search after which the best answer so far is returned.
-    without : the places of users' rules that are left out, as kb.reasoning.user_rules.rules_to_blame returns them.
-
-    Raises
-    ------
-    EncodingError, BadInputError, CannotOpenError : as for `solve`.
-    """
+    """Return the best answer set that is found within a number of conflicts, which is the same on every machine."""
     given = tuple(facts)
     answer = _answer(tuple(files), given, MAX_BOUNDED_SECONDS, conflicts, _versions(files), without)
     note_answer(files, given, answer.atoms, about)
@@ -106,13 +68,7 @@ def _answer(
     _files_as_of: tuple[tuple[int, int], ...],
     without: tuple[str, ...] = (),
 ) -> BoundedAnswer:
-    """Return the answer of `solve` or `solve_within`; cached while the files stay as they are.
-
-    files : paths of encodings and of files with users' rules. facts : atoms as text, without full stops. seconds : the
-        limit of wall-clock time of the search; not used with users' rules. conflicts : the limit of conflicts; None for
-        none. _files_as_of : the versions of the users' files. without : the places
-        of users' rules that are left out.
-    """
+    """Return the answer of `solve` or `solve_within`; cached while the files stay as they are."""
     users = _users_files(files)
     if users:
         from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time

@@ -34,16 +34,10 @@ MAX_CONFLICTS = 100_000  # conflicts of clingo's search for the best answer; bou
 
 
 class RuleLimits(NamedTuple):
-    """The limits of the work with users' rules.
+    """The limits of the work with users' rules."""
 
-    Attributes
-    ----------
-    seconds : of wall-clock time, to read rules, or to solve one encoding with them.
-    conflicts : of clingo's search for the best answer.
-    """
-
-    seconds: float = MAX_RULE_SECONDS
-    conflicts: int = MAX_CONFLICTS
+    seconds: float = MAX_RULE_SECONDS  # of wall-clock time, to read rules, or to solve one encoding with them
+    conflicts: int = MAX_CONFLICTS  # of clingo's search for the best answer
 
 
 RULE_LIMITS = RuleLimits()
@@ -52,23 +46,7 @@ CLINGO_MESSAGE = re.compile(r"<\w+>:(\d+):(\d+)(?:-(?:\d+:)?(\d+))?: (?:error|in
 
 
 def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
-    """Return the rules of some files, parsed and checked against the vocabulary.
-
-    Parameters
-    ----------
-    paths : the paths of the files, in order.
-    limits : the wall-clock time, in seconds, for each file; the limit of conflicts is not used.
-
-    Returns
-    -------
-    The rules of all files together: their statements in order, the predicates of the user's own, and which rules take
-    part in which encoding and in queries.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    BadInputError : the rules have errors; carries all of them.
-    """
+    """Return the rules of some files, parsed and checked against the vocabulary."""
     return _rulebook(sources_of(paths), limits.seconds)
 
 
@@ -78,26 +56,7 @@ def sources_of(paths: Sequence[Path | str]) -> tuple[Source, ...]:
 
 
 def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
-    """Return the rules of some files after a test with every encoding that they reach.
-
-    The test finds rules that contradict each other or never end whatever is given, and arithmetic without a result.
-
-    Parameters
-    ----------
-    paths : the paths of the files, in order.
-    limits : the wall-clock time, in seconds, for each file and each test; and the conflicts of clingo's search when the
-        rules are solved by themselves.
-
-    Returns
-    -------
-    The rules of all files together: their statements in order, the predicates of the user's own, and which rules take
-    part in which encoding and in queries.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    BadInputError : the rules have errors, or the test fails.
-    """
+    """Return the rules of some files after a test with every encoding that they reach."""
     return read_tested_sources(sources_of(paths), limits)
 
 
@@ -122,12 +81,7 @@ def read_tested_sources(sources: Sequence[Source], limits: RuleLimits = RULE_LIM
 
 @lru_cache(maxsize=16)
 def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
-    """Return the checked rules of some sources together; raise BadInputError with the problems of all of them.
-
-    The result is cached: the same sources give the same object.
-
-    sources : the texts of the files, in order. seconds : the limit of wall-clock time for each.
-    """
+    """Return the checked rules of some sources together; raise BadInputError with the problems of all of them."""
     problems: list[Problem] = []
     statements: list[Statement] = []
     for source in sources:
@@ -152,13 +106,8 @@ def internal_names() -> frozenset[str]:
 
 
 def _statements(source: Source, seconds: float, renamed: Sequence[Signature] = ()) -> list[Statement]:
-    """Return the statements of one source, in order; at least one.
-
-    Each holds its place, the atoms that it states and those on which they depend, and its text. Raises BadInputError
-    when it is no file of rules, has no rule, or takes too much time or memory.
-
-    seconds : the limit of wall-clock time. renamed : the predicates that get another name in what clingo gets.
-    """
+    """Return the statements of one source, in order; at least one."""
+    # Raises BadInputError when it is no file of rules, has no rule, or takes too much time or memory.
     end = time.monotonic() + seconds
     try:
         problems = list(_not_allowed(source, _until(end, tokenize(source, []))))
@@ -186,10 +135,7 @@ def _statements(source: Source, seconds: float, renamed: Sequence[Signature] = (
 
 
 def words_of_rules(source: Source, statements: Sequence[Statement]) -> tuple[RuleWords, tuple[Problem, ...]]:
-    """Return the sentences of a user's rules (kb.reasoning.sentences), and the problems of its annotations.
-
-    source : the text of a file. statements : the statements of that file.
-    """
+    """Return the sentences of a user's rules (kb.reasoning.sentences), and the problems of its annotations."""
     rules = [(one.at, one.variables) for one in statements if one.declares is None]
     return read_sentences(source, rules)
 
@@ -203,11 +149,7 @@ def _until(end: float, tokens: Iterable[Token]) -> Iterator[Token]:
 
 
 def _not_allowed(source: Source, tokens: Iterable[Token]) -> Iterator[Problem]:
-    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
-
-    One for each `#include` in the order of the text; nothing after the first bracket that is nested more than
-    MAX_TERM_DEPTH deep. `tokens` are those of the source.
-    """
+    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash."""
     depth = 0
     for token in tokens:
         if token.text == "#include":
@@ -226,28 +168,7 @@ def solve_with_user_rules(
     limits: RuleLimits = RULE_LIMITS,
     without: Container[str] = (),
 ) -> BoundedAnswer | None:
-    """Return the best answer set of an encoding with users' rules.
-
-    Parameters
-    ----------
-    ours : the path of the encoding; exactly one.
-    users : the paths of the users' rules.
-    facts : the facts of the encoding, without full stops.
-    conflicts : of clingo's search, after which the best answer so far counts; there may be none, also because the
-        rules leave none. None where an answer is needed, within the conflicts of `limits`.
-    limits : the wall-clock time, in seconds, and the conflicts of clingo's search.
-    without : the places of rules that are left out, such as `rules.lp:3`.
-
-    Returns
-    -------
-    The atoms, whether they are proved to be the best ones, and their cost; None when none of the rules reaches this
-    encoding, so that it must be solved without them. Of several best answers the one that clingo finds last.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    BadInputError : the rules have errors, contradict the facts, derive invalid atoms, or take too much time or memory.
-    """
+    """Return the best answer set of an encoding with users' rules."""
     rules = read_rules(users, limits)
     (encoding,) = ours
     reaching = [one for one in rules.rules_reaching(encoding.stem) if one.line not in without]
@@ -259,19 +180,7 @@ def solve_with_user_rules(
 
 
 def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple[str, ...]:
-    """Return the rules with a body that had no instance in any decision, in words, in the order of the files.
-
-    Rules that reach queries alone are left out: they wait to be asked.
-
-    Parameters
-    ----------
-    users : the paths of the users' rules.
-    applied : the places of those that had one, as `RULES.lp:LINE:COLUMN`.
-
-    Raises
-    ------
-    CannotOpenError, BadInputError : as for `read_rules`.
-    """
+    """Return the rules with a body that had no instance in any decision, in words, in the order of the files."""
     rules = read_rules(users) if users else Rulebook(())
     deciding = {one for name in USER_RULE_INTERFACES for one in rules.rules_reaching(name) if one.condition}
     what = "this rule never applied, for nothing was as it says"
@@ -283,18 +192,14 @@ def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple
 
 
 def world_facts_named(encoding: str, users: Sequence[Path]) -> frozenset[str]:
-    """Return the names of the predicates of the world model that users' rules want to be given in an encoding.
-
-    Its name is given without `.lp`. Raises CannotOpenError or BadInputError when the files are not valid.
-    """
+    """Return the names of the predicates of the world model that users' rules want to be given in an encoding."""
+    # Raises CannotOpenError or BadInputError when the files are not valid.
     return frozenset(name for name, _ in read_rules(users).world_facts_named(encoding)) if users else frozenset()
 
 
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
-    """Return whether any of some users' rules takes part in an encoding; its name is given without `.lp`.
-
-    Raises CannotOpenError or BadInputError when the files are not valid.
-    """
+    """Return whether any of some users' rules takes part in an encoding; its name is given without `.lp`."""
+    # Raises CannotOpenError or BadInputError when the files are not valid.
     return bool(users) and bool(read_rules(users).rules_reaching(encoding))
 
 
@@ -305,19 +210,8 @@ def rules_to_blame(
     is_bad: Callable[[Sequence[clingo.Symbol]], bool],
     without: Container[str] = (),
 ) -> tuple[str, ...]:
-    """Return the places of the rules because of which an answer is bad, such as `rules.lp:3`; () without such rules.
-
-    Without any one of them the answer would not be bad. Of several such sets the one that is left when rules are left
-    out in turn, from the last to the first.
-
-    Parameters
-    ----------
-    encoding : the path of the encoding.
-    users : the paths of the users' rules.
-    facts : the facts of the encoding, without full stops.
-    is_bad : says of the shown atoms whether they are a bad answer; they are one with all rules. So is no answer.
-    without : the places of rules that are left out anyway.
-    """
+    """Return the places of the rules because of which an answer is bad, such as `rules.lp:3`; () without such rules."""
+    # Without any one of them the answer would not be bad.
     left = [one for one in read_rules(users).rules_reaching(encoding.stem) if one.line not in without]
     for one in reversed(left):
         fewer = [other for other in left if other is not one]
@@ -351,16 +245,7 @@ def _solved(
 def _solved_by_worker(
     name: str, program: str, reaching: Sequence[Statement], limits: RuleLimits, may_fail: bool = False
 ) -> dict[str, Any]:
-    """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer.
-
-    The response is as of kb.reasoning.rule_solver; {} without a search. may_fail : whether no answer is no error.
-
-    name : the name of the program in messages; '' for the rules alone.
-    program : the text of the encoding and its facts; '' for the rules alone.
-    reaching : the rules, at least one.
-    limits : the wall-clock time, in seconds, and the conflicts of clingo's search; with 0 conflicts the program is only
-        grounded.
-    """
+    """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer."""
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     conditions = [one.condition for one in reaching]
     request = {"program": program, "rules": [one.text for one in reaching], "conditions": conditions, "heads": heads}
@@ -403,15 +288,7 @@ def _as_fact(text: str) -> Fact | None:
 
 
 def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
-    """Return the error at the first rule that may have derived an atom; at the first rule when none may.
-
-    The error is returned, not raised; it carries one problem, at the head of that rule.
-
-    reaching : the rules, at least one.
-    text : the atom as text.
-    atom : the same as a fact; None when it is none, then its name alone decides.
-    what : the message.
-    """
+    """Return the error at the first rule that may have derived an atom; at the first rule when none may."""
     name = text.partition("(")[0]
     for one in reaching:
         for head in one.heads:
@@ -421,11 +298,7 @@ def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact |
 
 
 def _may_have_derived(constants: Sequence[str | None], atom: Fact) -> bool:
-    """Return whether the constants of a head agree with an atom; None, for a variable, agrees with everything.
-
-    constants : of each argument of the head its text when it is a constant, else None. atom : a derived fact; a
-        different number of arguments does not agree.
-    """
+    """Return whether the constants of a head agree with an atom; None, for a variable, agrees with everything."""
     return len(constants) == len(atom.args) and all(
         constant is None or constant == str(term) for constant, term in zip(constants, atom.args, strict=True)
     )
@@ -445,13 +318,7 @@ def rules_worker() -> Worker:
 
 
 def _error_at_place(source: Source, message: str) -> BadInputError:
-    """Return the error for a message of clingo's, at its place in the user's file.
-
-    The error is returned, not raised; it carries one problem, which stands at the start of the file when the message
-    has no place.
-
-    source : the text of the file. message : clingo's message, which begins with its place.
-    """
+    """Return the error for a message of clingo's, at its place in the user's file."""
     place = CLINGO_MESSAGE.search(message)
     if place is None:
         return BadInputError([source.problem(source.start(), _one_line(message))])
@@ -467,18 +334,13 @@ def _span(at: Sequence[int]) -> SourceSpan:
 
 
 def _one_line(message: str) -> str:
-    """Return the first line of a message of clingo's, with single blanks and without a colon at its end.
-
-    The lines below show the rewritten program.
-    """
+    """Return the first line of a message of clingo's, with single blanks and without a colon at its end."""
     return " ".join(message.split("\n")[0].split()).rstrip(":")
 
 
 def _unsafe_variable_message(message: str) -> str:
-    """Return a message of clingo's in one line; a message of our own for an unsafe variable.
-
-    clingo's own message would show the rewritten arithmetic.
-    """
+    """Return a message of clingo's in one line; a message of our own for an unsafe variable."""
+    # clingo's own message would show the rewritten arithmetic.
     unsafe = re.findall(r"'(\w+)' is unsafe", message)
     if not unsafe:
         return _one_line(message)

@@ -17,10 +17,7 @@ LineQueue = queue.SimpleQueue[bytes]  # the lines that a worker has written
 
 
 class Worker:
-    """A handle of the process, which starts with the first request (see `exchange`).
-
-    After a crash or a timeout, a new process is started for the next request.
-    """
+    """A handle of the process, which starts with the first request (see `exchange`)."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
@@ -38,25 +35,7 @@ class Worker:
             _end(worker)
 
     def exchange(self, request: dict[str, Any], seconds: float) -> dict[str, Any]:
-        """Return the response of the process to a request.
-
-        Parameters
-        ----------
-        request : JSON values by key, as kb.reasoning.query_worker takes them: {"read": text}, or the keys program,
-            rules, heads and conflicts, or the keys facts, query, rules and max_rows.
-        seconds : the limit of wall-clock time.
-
-        Returns
-        -------
-        The response, JSON values; {"limit": reason} when the process gives none in time or ends.
-
-        An exception while the process works, such as a keyboard interrupt, ends the process. Else its late response
-        would be taken for that of the next request.
-
-        Raises
-        ------
-        RuntimeError : a new process does not start.
-        """
+        """Return the response of the process to a request."""
         if self._process is not None and self._process.poll() is not None:
             self.close()  # it ended between two requests: it ends with the thread that started it
         if self._process is None:
@@ -82,11 +61,8 @@ class Worker:
 
 
 def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
-    """Return a new process that is ready, and the queue of the lines that it writes.
-
-    The queue has one entry of bytes a line, with its line end, and b"" when the process writes no more. Raises
-    RuntimeError when it is not ready within MAX_START_SECONDS.
-    """
+    """Return a new process that is ready, and the queue of the lines that it writes."""
+    # Raises RuntimeError when it is not ready within MAX_START_SECONDS.
     worker = subprocess.Popen(
         isolated_command("kb.reasoning.query_worker"),
         stdin=subprocess.PIPE,

@@ -17,29 +17,20 @@ NO_MEANINGS: Mapping[str, str] = MappingProxyType({})
 
 
 class Reconciliation(NamedTuple):
-    """The objects of the world model that the task's parameters mean.
+    """The objects of the world model that the task's parameters mean."""
 
-    Parameters and nodes are given by their names.
-
-    Attributes
-    ----------
-    binding : parameter -> node, of each bound parameter.
-    hypothesised : parameters of goals that match nothing seen so far.
-    doubtful : (parameter, node) pairs that need another observation to decide.
-    contradicted : (parameter, node, property) where the best match contradicts a claim; property is shape or colour.
-    unmovable : (parameter, node) pairs that match, but the task moves the parameter and the node cannot be moved.
-    measurable : (parameter, node) pairs that may match, which a better estimate of the node's size decides.
-    as_well : (parameter, node) pairs where the node matches as well as the one that the parameter is bound to, the
-        parameter is carried, and neither node was moved: a plan may mean either. () where users' rules take part, which
-        then decide alone.
-    """
-
-    binding: Mapping[str, str]
-    hypothesised: tuple[str, ...]
-    doubtful: tuple[tuple[str, str], ...]
+    binding: Mapping[str, str]  # parameter -> node, of each bound parameter
+    hypothesised: tuple[str, ...]  # parameters of goals that match nothing seen so far
+    doubtful: tuple[tuple[str, str], ...]  # (parameter, node) pairs that need another observation to decide
+    # (parameter, node, property) where the best match contradicts a claim; property is shape or colour
     contradicted: tuple[tuple[str, str, str], ...]
+    # (parameter, node) pairs that match, but the task moves the parameter and the node cannot be moved
     unmovable: tuple[tuple[str, str], ...] = ()
+    # (parameter, node) pairs that may match, which a better estimate of the node's size decides
     measurable: tuple[tuple[str, str], ...] = ()
+    # (parameter, node) pairs where the node matches as well as the one that the parameter is bound to, the parameter is
+    # carried, and neither node was moved: a plan may mean either. () where users' rules take part, which then decide
+    # alone.
     as_well: tuple[tuple[str, str], ...] = ()
 
 
@@ -56,34 +47,7 @@ def reconcile(
     refused: Iterable[tuple[str, str]] = (),
     world: Iterable[str] = (),
 ) -> Reconciliation:
-    """Return the best match of the task's object parameters with objects of the world model.
-
-    Parameters
-    ----------
-    task : the task, with its parameters, the claims about them and the goals.
-    model : the world model, whose objects may be meant.
-    distances : the length of the way to each node, in squares, by its name; nodes without a known way may be missing.
-    before : parameter -> node, the binding up to now; it is kept unless another one is clearly better.
-    rules : files with users' rules, solved together with kb/asp/reconciliation.lp.
-    carried : the names of the parameters that the goals move.
-    planned : parameter -> node, as the task plan under way means them; kept while no other node matches better.
-    kept : the names of the parameters that may mean nothing but what they are bound to, in every plan.
-    given_up : (parameter, node) pairs where what is asked cannot be done with the node as far as is known; others that
-        match equally well are preferred.
-    refused : (parameter, node) pairs that users' rules leave to no task plan; never bound.
-    world : facts of the world model that users' rules name, without full stops.
-
-    Returns
-    -------
-    The binding, parameter -> node, and what is open about it, all by name: parameters of goals that match nothing seen
-    so far, and pairs (parameter, node) that need another observation, contradict a claim, cannot be moved, or that a
-    better estimate of the node's size decides, or that match
-    as well as what is bound. All are empty when the encodings have no answer.
-
-    Raises
-    ------
-    BadInputError : users' rules cause an error.
-    """
+    """Return the best match of the task's object parameters with objects of the world model."""
     facts = [*_task_facts(task), *(f"carried({x})" for x in carried)]
     facts += [fact for node in model.objects for fact in _node_facts(node)]
     facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
@@ -115,11 +79,7 @@ def as_well_by_parameter(reconciled: Reconciliation) -> Mapping[str, tuple[str, 
 
 
 def _task_facts(task: Task) -> Iterable[str]:
-    """Yield the object parameters and their claims as facts for kb/asp/reconciliation.lp, without full stops.
-
-    These are `wanted(Parameter)`, `named(Parameter)` where a goal mentions it, and
-    `claim(Parameter,shape|colour,Value,Percent)`.
-    """
+    """Yield the object parameters and their claims as facts for kb/asp/reconciliation.lp, without full stops."""
     for name, parameter in task.parameters.items():
         if parameter.kind == "object":
             yield f"wanted({name})"
@@ -132,13 +92,7 @@ def _task_facts(task: Task) -> Iterable[str]:
 
 
 def _node_facts(node: Node) -> Iterable[str]:
-    """Yield what is believed about an object as facts for kb/asp/reconciliation.lp, without full stops.
-
-    Percents are confidences: that it is an object, or that it has the value. These are `candidate(Node,Percent)` and
-    `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where no impression can change it;
-    `fixed(Node)` and `moved(Node)`; and `may_be(Node,shape,square|brick)`, what a rectangle may be as far as its size
-    is known.
-    """
+    """Yield what is believed about an object as facts for kb/asp/reconciliation.lp, without full stops."""
     yield f"candidate({node.name},{node.confidence})"
     for shape, confidence in sorted(node.shape.items()):
         yield f"has({node.name},shape,{shape},{confidence})"

@@ -42,47 +42,28 @@ WRAPPING_GOALS = ("first", "then", "prefer")  # words of goal.lp whose first arg
 
 @dataclass(frozen=True)
 class Parameter:
-    """A thing that the task mentions.
+    """A thing that the task mentions."""
 
-    Attributes
-    ----------
-    name : its name in the task, a word such as x.
-    kind : "object", "door" or "room".
-    span : the place in start.lp that introduces it: line and columns from 1.
-    """
-
-    name: str
-    kind: str
-    span: SourceSpan = field(compare=False)
+    name: str  # its name in the task, a word such as x
+    kind: str  # "object", "door" or "room"
+    span: SourceSpan = field(compare=False)  # the place in start.lp that introduces it: line and columns from 1.
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim about an object.
+    """A claim about an object."""
 
-    Attributes
-    ----------
-    fact : the claim, such as `shape(x, square)` or `colour(x, r)`.
-    confidence : the user's confidence in it, percent, 0 to 100; 100 when none is given.
-    """
-
-    fact: Fact
-    confidence: int = CERTAIN_CONFIDENCE
+    fact: Fact  # the claim, such as `shape(x, square)` or `colour(x, r)`
+    confidence: int = CERTAIN_CONFIDENCE  # the user's confidence in it, percent, 0 to 100; 100 when none is given
 
 
 @dataclass(frozen=True)
 class Task:
-    """The task of the robot.
+    """The task of the robot."""
 
-    Attributes
-    ----------
-    parameters : the parameters by name, in the order of start.lp.
-    claims : the claims about objects' shapes and colours, in the order of start.lp.
-    goals : what shall hold, facts in the order of goal.lp; `first(G)` and `then(G)` are kept as they stand.
-    """
-
-    parameters: Mapping[str, Parameter]
-    claims: tuple[Claim, ...]
+    parameters: Mapping[str, Parameter]  # the parameters by name, in the order of start.lp.
+    claims: tuple[Claim, ...]  # the claims about objects' shapes and colours, in the order of start.lp.
+    # What shall hold, facts in the order of goal.lp; `first(G)` and `then(G)` are kept as they stand.
     goals: tuple[Fact, ...]
 
     def is_object(self, word: str) -> bool:
@@ -96,30 +77,12 @@ class Task:
         return frozenset(words & set(self.parameters))
 
     def claims_of(self, name: str) -> tuple[Claim, ...]:
-        """Return the claims about one parameter, in the order of start.lp; () when there are none.
-
-        Each holds the fact that is claimed, such as `shape(x, square)`, and the confidence in it in percent.
-        """
+        """Return the claims about one parameter, in the order of start.lp; () when there are none."""
         return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), SourceSpan(0, 0, 0)))
 
 
 def read_task(start: Path | str, goal: Path | str) -> Task:
-    """Return the task of a scenario.
-
-    Parameters
-    ----------
-    start, goal : the paths of the files start.lp and goal.lp.
-
-    Returns
-    -------
-    The task, checked: the parameters (name, kind and place) by name, the claims with their confidences in percent, and
-    the goals as facts, each in the order of its file.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    BadInputError : the files have errors; carries those of both.
-    """
+    """Return the task of a scenario."""
     problems: list[Problem] = []
     sources: list[Source | None] = []
     for path in (start, goal):
@@ -137,21 +100,7 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
 
 
 def read_start(path: Path | str) -> tuple[Fact, ...]:
-    """Return the facts of start.lp, checked without goal.lp.
-
-    Parameters
-    ----------
-    path : the path of the file.
-
-    Returns
-    -------
-    The facts in order: object/1, door/1, room/1, shape/2, colour/2 and confidence/2.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the file has errors; carries all of them.
-    """
+    """Return the facts of start.lp, checked without goal.lp."""
     source = read_source(path)
     problems: list[Problem] = []
     start_facts = _checked_facts(source, START_VOCABULARY, problems)
@@ -163,21 +112,7 @@ def read_start(path: Path | str) -> tuple[Fact, ...]:
 
 
 def task_with_goals(task: Task, source: Source) -> Task:
-    """Return a task with other goals.
-
-    Parameters
-    ----------
-    task : the task whose parameters and claims are kept.
-    source : the goals, as in goal.lp, and perhaps further parameters and claims, as in start.lp.
-
-    Returns
-    -------
-    The task, checked: its goals are those of the source.
-
-    Raises
-    ------
-    BadInputError : the text has errors; carries all of them.
-    """
+    """Return a task with other goals."""
     facts = parse_facts(source)
     problems = check_facts(source, facts, {**START_VOCABULARY, **GOAL_VOCABULARY})
     if problems:
@@ -198,24 +133,7 @@ def start_facts_of(task: Task) -> Iterator[str]:
 
 
 def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_facts: tuple[Fact, ...]) -> Task:
-    """Return the task that the facts of two sources state.
-
-    The vocabulary of the facts, which predicates with which arguments, must have been checked before.
-
-    Parameters
-    ----------
-    start, start_facts : the source (its text, for messages) and the facts of start.lp.
-    goal, goal_facts : the source and the facts of goal.lp.
-
-    Returns
-    -------
-    The task: the parameters (name, kind and place) by name, the claims with their confidences in percent, and the goals
-    as they were given, each in the order of the facts.
-
-    Raises
-    ------
-    BadInputError : parameters, claims or goals contradict each other; carries the problems of both files.
-    """
+    """Return the task that the facts of two sources state."""
     parameters, claims, problems = _start_problems(start, start_facts)
     problems += _duplicates(goal, goal_facts)
     problems += _goal_problems(goal, goal_facts, parameters)
@@ -227,11 +145,7 @@ def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_fac
 def _start_problems(
     source: Source, start_facts: tuple[Fact, ...]
 ) -> tuple[dict[str, Parameter], list[Claim], list[Problem]]:
-    """Return the parameters of start.lp by name, its claims in order, and the problems in it; [] for none.
-
-    Parameters hold their kind (object, door or room) and place, claims a fact and its confidence in percent. Problems
-    are those of duplicates first, then of parameters, claims and contradictions.
-    """
+    """Return the parameters of start.lp by name, its claims in order, and the problems in it; [] for none."""
     problems = _duplicates(source, start_facts)
     parameters = _parameters(source, start_facts, problems)
     claims = _claims(source, start_facts, parameters, problems)
@@ -240,12 +154,7 @@ def _start_problems(
 
 
 def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list[Problem]) -> tuple[Fact, ...]:
-    """Return the facts of a source, in order; append its problems to `problems`.
-
-    () for None and for a text with syntax errors. Facts that the vocabulary does not know are returned, too.
-
-    source : the text, or None for one that could not be read. vocabulary : the types of the arguments by predicate.
-    """
+    """Return the facts of a source, in order; append its problems to `problems`."""
     if source is None:
         return ()
     try:
@@ -258,10 +167,7 @@ def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list
 
 
 def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
-    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time.
-
-    One for each repetition, at its place in `source`, in the order of `facts`; [] when there are none.
-    """
+    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time."""
     seen: dict[Fact, int] = {}
     problems = []
     for fact in facts:
@@ -274,11 +180,8 @@ def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
 
 
 def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]) -> dict[str, Parameter]:
-    """Return the parameters that start.lp introduces, by name in the order of the facts; append problems to `problems`.
-
-    A parameter holds its name, its kind (object, door or room) and its place. A reserved word is left out; a name that
-    is introduced as two kinds keeps the first one.
-    """
+    """Return the parameters that start.lp introduces, by name in the order of the facts."""
+    # Append problems to `problems`.
     found: dict[str, Parameter] = {}
     for fact in facts:
         if fact.name not in PARAMETER_KINDS:
@@ -297,11 +200,7 @@ def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]
 def _claims(
     source: Source, facts: tuple[Fact, ...], parameters: Mapping[str, Parameter], problems: list[Problem]
 ) -> list[Claim]:
-    """Return the claims of start.lp in order; append problems to `problems`.
-
-    A claim holds a fact and the confidence in it in percent. Claims about an unknown parameter, or about one that is no
-    object, are returned, too. `parameters` are those of start.lp, by name.
-    """
+    """Return the claims of start.lp in order; append problems to `problems`."""
     claims: list[Claim] = []
     confidences: dict[Fact, int] = {}
     for fact in facts:
@@ -323,10 +222,7 @@ def _claims(
 
 
 def _claim(fact: Fact) -> Claim:
-    """Return the claim that a fact states: `confidence(Fact, Percent)`, or a bare fact, which is certain.
-
-    It holds the inner fact, such as `shape(x, square)`, and the confidence in percent, 100 for a bare fact.
-    """
+    """Return the claim that a fact states: `confidence(Fact, Percent)`, or a bare fact, which is certain."""
     if fact.name != "confidence":
         return Claim(fact)
     inner, degree = fact.args
@@ -336,10 +232,7 @@ def _claim(fact: Fact) -> Claim:
 
 
 def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
-    """Yield a problem for each certain claim that cannot hold with the first one of its kind on that object.
-
-    Certain are claims with a confidence of 100 percent; kinds are shape and colour.
-    """
+    """Yield a problem for each certain claim that cannot hold with the first one of its kind on that object."""
     certain: dict[tuple[str, Term], Fact] = {}
     for claim in claims:
         if claim.confidence < CERTAIN_CONFIDENCE:
@@ -353,10 +246,7 @@ def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
 
 
 def _compatible(one: Fact, other: Fact) -> bool:
-    """Return whether two claims of the same kind (shape or colour) about one object can both hold.
-
-    So it is for equal values, and for shapes of which one includes the other: polygon all, rectangle square and brick.
-    """
+    """Return whether two claims of the same kind (shape or colour) about one object can both hold."""
     first, second = str(one.args[1]), str(other.args[1])
     if first == second:
         return True
@@ -370,13 +260,7 @@ def _compatible(one: Fact, other: Fact) -> bool:
 
 
 def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[str, Parameter]) -> Iterator[Problem]:
-    """Yield the problems of goals: their order, their arguments, and an empty goal.
-
-    A problem holds the file, the place, the message, the source line and a hint. They come in the order of the goals;
-    an empty goal is the last one.
-
-    source : goal.lp. goals : its facts, in order. parameters : those of start.lp, by name.
-    """
+    """Yield the problems of goals: their order, their arguments, and an empty goal."""
     has_goal = False
     for fact in goals:
         goal = _inner_goal(fact)
@@ -413,14 +297,7 @@ def _inner_goal(fact: Fact) -> Fact:
 def _wrong_kind(
     source: Source, goal: Fact, term: Symbol, kinds: tuple[str, ...], parameters: Mapping[str, Parameter]
 ) -> Iterator[Problem]:
-    """Yield the problem of an argument that is no parameter of an accepted kind; nothing when it is one.
-
-    source : goal.lp.
-    goal : the goal, without `first` or `then`.
-    term : its argument, a plain name.
-    kinds : the kinds of parameters (object, door, room) and the words (utak, start) that the argument may be.
-    parameters : those of start.lp, by name.
-    """
+    """Yield the problem of an argument that is no parameter of an accepted kind; nothing when it is one."""
     if term.name in kinds:
         return
     wanted = " or ".join(f"a{'n' * (kind == 'object')} {kind}" if kind in PARAMETER_KINDS else kind for kind in kinds)
@@ -438,11 +315,7 @@ def _wrong_kind(
 
 
 def _not_introduced(name: str, known: Iterable[str], kinds: Sequence[str]) -> tuple[str, str]:
-    """Return message and hint for a parameter that start.lp does not introduce.
-
-    name : the parameter. known : those that are introduced and may stand there; the hint names the most similar one.
-    kinds : the kinds of parameters, and the words, that may stand there.
-    """
+    """Return message and hint for a parameter that start.lp does not introduce."""
     introduced = " or ".join(f"{kind}({name})." for kind in kinds if kind in PARAMETER_KINDS)
     words = [kind for kind in kinds if kind not in PARAMETER_KINDS]
     hint = did_you_mean(name, [*known, *words]) or (f"write {introduced} in start.lp" if introduced else "")

@@ -10,12 +10,7 @@ ValueTuple = tuple[Value, ...]  # a tuple of an aggregate
 
 
 class Tally:
-    """Collects the tuples of one aggregate; a tuple that is added twice counts once.
-
-    Parameters
-    ----------
-    function : `#count`, `#sum`, `#sum+` (negative weights count 0), `#min` or `#max`.
-    """
+    """Collects the tuples of one aggregate; a tuple that is added twice counts once."""
 
     def __init__(self, function: str) -> None:
         self._function = function
@@ -24,11 +19,7 @@ class Tally:
         self._vague: list[ValueTuple] = []
 
     def add(self, values: ValueTuple, possible: bool) -> None:
-        """Add a tuple of terms.
-
-        values : the tuple; its first value is the weight. For `#count` it may be empty.
-        possible : whether the tuple may be absent; else it is certain.
-        """
+        """Add a tuple of terms."""
         if not possible:
             self._certain[values] = None
         elif not any(isinstance(value, Unknown) for value in values):
@@ -37,12 +28,8 @@ class Tally:
             self._vague.append(values)
 
     def value(self) -> Value:
-        """Return the value of the aggregate; an `Unknown`, with bounds for a number, when it is not certain.
-
-        The bounds hold all values that it can have with some, all or none of the tuples that may be absent. A certain
-        value is an integer, or for `#min` and `#max` any value; without tuples 0, clingo's Supremum for `#min` or its
-        Infimum for `#max`. Raises CalculationError for a value beyond 32 bits.
-        """
+        """Return the value of the aggregate; an `Unknown`, with bounds for a number, when it is not certain."""
+        # Raises CalculationError for a value beyond 32 bits.
         new_possible = [values for values in self._possible if values not in self._certain]
         if self._function == "#count":
             return self._between(len(self._certain), len(new_possible), 0)
@@ -51,24 +38,16 @@ class Tally:
         return self._least_or_greatest(new_possible)
 
     def _between(self, least: int, up: int, down: int) -> Value:
-        """Return a number from `least` - `down` to `least` + `up`: an integer when both are 0, else an `Unknown`.
-
-        The bounds of the `Unknown` are both included, and cut to 32 bits. There is no upper bound where a tuple has
-        unknown values. Raises CalculationError for a `least` beyond 32 bits.
-        """
+        """Return a number from `least` - `down` to `least` + `up`: an integer when both are 0, else an `Unknown`."""
+        # Raises CalculationError for a `least` beyond 32 bits.
         require_int32(least)
         high = MAX_INT32 if self._vague else min(MAX_INT32, least + up)
         low = max(MIN_INT32, least - down)
         return least if low == high == least else Unknown(low, high)
 
     def _sum(self, new_possible: list[ValueTuple]) -> Value:
-        """Return the sum of the weights, an integer; an `Unknown` with bounds when it is not certain.
-
-        Weights, the first values of the tuples, that are no numbers count 0. Raises CalculationError when the sum of
-        the certain weights is beyond 32 bits.
-
-        new_possible : the tuples that may be absent.
-        """
+        """Return the sum of the weights, an integer; an `Unknown` with bounds when it is not certain."""
+        # Raises CalculationError when the sum of the certain weights is beyond 32 bits.
 
         def weight(values: ValueTuple) -> int:
             """Return the number with which a tuple counts: its first value, 0 when that is no number."""
@@ -84,14 +63,7 @@ class Tally:
         return self._between(sum(map(weight, self._certain)), sum(w for w in weights if w > 0), down)
 
     def _least_or_greatest(self, new_possible: list[ValueTuple]) -> Value:
-        """Return the least (for `#min`) or the greatest first value; for no tuples, the value beyond all others.
-
-        The result is an integer or a clingo symbol, without certain tuples clingo's Supremum (least) or Infimum. An
-        `Unknown`, with bounds where all values are numbers, when a tuple that may be absent, or an unknown value, may
-        change it.
-
-        new_possible : the tuples that may be absent, their values known.
-        """
+        """Return the least (for `#min`) or the greatest first value; for no tuples, the value beyond all others."""
         least = self._function == "#min"
         best = clingo.Supremum if least else clingo.Infimum
         for values in self._certain:
@@ -112,25 +84,13 @@ class Tally:
 
 
 def _is_beyond(value: Value, best: object, least: bool) -> bool:
-    """Return whether a known value is less (for `least`), or greater, than the best one in clingo's order.
-
-    value : an integer or a clingo symbol; False when it equals the best one.
-    least : whether the least value is sought; else the greatest.
-    best : a clingo symbol.
-    """
+    """Return whether a known value is less (for `least`), or greater, than the best one in clingo's order."""
     one = as_clingo(value)
     return bool(one < best) if least else bool(one > best)
 
 
 def _may_go_beyond(value: Value, best: object, least: bool) -> bool:
-    """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one.
-
-    True for every value that is no number, or may be none.
-
-    value : an integer, a clingo symbol or an `Unknown`.
-    best : a clingo symbol; the order is clingo's.
-    least : whether the least value is sought; else the greatest.
-    """
+    """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one."""
     ends = bounds(value)
     if ends is None:
         return True

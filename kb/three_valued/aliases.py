@@ -21,11 +21,7 @@ UTAK_TYPES = (
 
 
 def rename_utak_to_org(clause: Clause) -> Clause:
-    """Return a clause with the constant `org` in the place of `utak`, except where facts say `utak`, too.
-
-    They do in arguments of UTAK_TYPES: kinds, goals and circumstances; and so do comparisons with a variable that
-    stands for one. Only the body is changed, inside aggregates and conditions as well; the head stays.
-    """
+    """Return a clause with the constant `org` in the place of `utak`, except where facts say `utak`, too."""
     kinds = {
         part.name
         for atom in atoms_of(clause.body)
@@ -42,12 +38,7 @@ def _utak_arguments(atom: Atom) -> list[int]:
 
 
 def _renamed(part: Any, kinds: Set[str]) -> Any:
-    """Return a part of a clause (term, literal, element or tuple of them) with `org` in the place of `utak`.
-
-    The result is of the same type as `part`.
-
-    kinds : names of variables that stand for values of UTAK_TYPES; a comparison with one of them is kept as it is.
-    """
+    """Return a part of a clause (term, literal, element or tuple of them) with `org` in the place of `utak`."""
     if isinstance(part, Constant):
         return replace(part, value=ORG_TERM) if part.value == UTAK_TERM else part
     if isinstance(part, Comparison) and any(

@@ -61,19 +61,6 @@ UNARY_OPERATIONS: Mapping[str, Callable[[int], int]] = {"-": lambda a: -a, "~": 
 def calculate(sign: str, *values: int) -> int:
     """Return the result of an operation on one or two integers.
 
-    Parameters
-    ----------
-    sign : the operator in ASP syntax; `|` with one value is the absolute value, `?` is bitwise or, `^` exclusive or.
-    values : one or two integers, the left operand first.
-
-    Returns
-    -------
-    The result.
-
-    Raises
-    ------
-    CalculationError : a division by zero, or a result beyond 32 bits.
-
     Examples
     --------
     >>> calculate("*", 65536, -32768)

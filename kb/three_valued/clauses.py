@@ -33,14 +33,7 @@ AGGREGATE_FUNCTIONS = {
 
 
 class ClauseError(Exception):
-    """A rule or a query uses an unknown word or a construct that is not supported.
-
-    Attributes
-    ----------
-    what : the message.
-    at : line and column, from 1.
-    hint : a remedy, or '' for none.
-    """
+    """A rule or a query uses an unknown word or a construct that is not supported."""
 
     def __init__(self, what: str, at: tuple[int, int], hint: str = "") -> None:
         self.what, self.at, self.hint = what, at, hint
@@ -49,63 +42,38 @@ class ClauseError(Exception):
 
 @dataclass(frozen=True)
 class Constant:
-    """A term without variables.
+    """A term without variables."""
 
-    Attributes
-    ----------
-    value : an integer, or a clingo symbol (a name, a string, a compound term).
-    at : line and column, from 1.
-    """
-
-    value: Any
-    at: tuple[int, int]
+    value: Any  # an integer, or a clingo symbol (a name, a string, a compound term)
+    at: tuple[int, int]  # line and column, from 1
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable.
+    """A variable."""
 
-    Attributes
-    ----------
-    name : its name. Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name
-        such as `.1`.
-    at : line and column, from 1.
-    """
-
+    # Its name. Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name such as
+    # `.1`.
     name: str
-    at: tuple[int, int]
+    at: tuple[int, int]  # line and column, from 1
 
 
 @dataclass(frozen=True)
 class Operation:
-    """Arithmetic on one or two terms.
+    """Arithmetic on one or two terms."""
 
-    Attributes
-    ----------
-    sign : the operator in ASP syntax; `..` denotes an interval, `|` the absolute value, `?` bitwise or.
-    parts : the operands, the left one first.
-    at : line and column, from 1.
-    """
-
-    sign: str
-    parts: tuple["ClauseTerm", ...]
-    at: tuple[int, int]
+    sign: str  # the operator in ASP syntax; `..` denotes an interval, `|` the absolute value, `?` bitwise or.
+    parts: tuple["ClauseTerm", ...]  # the operands, the left one first
+    at: tuple[int, int]  # line and column, from 1
 
 
 @dataclass(frozen=True)
 class Compound:
-    """A term with arguments.
+    """A term with arguments."""
 
-    Attributes
-    ----------
-    name : its name; '' for a tuple.
-    parts : the arguments in order.
-    at : line and column, from 1.
-    """
-
-    name: str
-    parts: tuple["ClauseTerm", ...]
-    at: tuple[int, int]
+    name: str  # its name; '' for a tuple
+    parts: tuple["ClauseTerm", ...]  # the arguments in order
+    at: tuple[int, int]  # line and column, from 1
 
 
 ClauseTerm = Constant | Variable | Operation | Compound  # an argument of an atom, or a side of a comparison
@@ -113,20 +81,12 @@ ClauseTerm = Constant | Variable | Operation | Compound  # an argument of an ato
 
 @dataclass(frozen=True)
 class Atom:
-    """A predicate with arguments.
+    """A predicate with arguments."""
 
-    Attributes
-    ----------
-    name : the predicate.
-    parts : the arguments.
-    negations : the number of `not` before the atom, 0 to 2.
-    at : line and column, from 1.
-    """
-
-    name: str
-    parts: tuple[ClauseTerm, ...]
-    negations: int
-    at: tuple[int, int]
+    name: str  # the predicate
+    parts: tuple[ClauseTerm, ...]  # the arguments
+    negations: int  # the number of `not` before the atom, 0 to 2
+    at: tuple[int, int]  # line and column, from 1
 
     @property
     def signature(self) -> tuple[str, int]:
@@ -136,84 +96,51 @@ class Atom:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold.
+    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold."""
 
-    Attributes
-    ----------
-    first : the first term.
-    rest : pairs (sign, term); each sign, in ASP syntax, compares its term with the one before.
-    negated : whether `not` stands before the chain.
-    at : line and column, from 1.
-    """
-
-    first: ClauseTerm
+    first: ClauseTerm  # the first term
+    # Pairs (sign, term); each sign, in ASP syntax, compares its term with the one before
     rest: tuple[tuple[str, ClauseTerm], ...]
-    negated: bool
-    at: tuple[int, int]
+    negated: bool  # whether `not` stands before the chain
+    at: tuple[int, int]  # line and column, from 1
 
 
 @dataclass(frozen=True)
 class AggregateElement:
-    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold.
+    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold."""
 
-    Attributes
-    ----------
-    terms : the tuple; its first term is the weight.
-    condition : the literals; () for none.
-    """
-
-    terms: tuple[ClauseTerm, ...]
-    condition: tuple["Literal", ...]
+    terms: tuple[ClauseTerm, ...]  # the tuple; its first term is the weight
+    condition: tuple["Literal", ...]  # the literals; () for none
 
 
 @dataclass(frozen=True)
 class Aggregate:
-    """An aggregate `term sign #function { elements }` with its guards; when `negated`, that one of them does not hold.
+    """An aggregate `term sign #function { elements }` with its guards."""
 
-    Attributes
-    ----------
-    function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
-    elements : what is counted, summed or compared.
-    guards : pairs (sign, term) such that `term sign value` must hold.
-    negated : whether `not` stands before it.
-    at : line and column, from 1.
-    """
+    # When `negated`, that one of them does not hold.
 
-    function: str
-    elements: tuple[AggregateElement, ...]
-    guards: tuple[tuple[str, ClauseTerm], ...]
-    negated: bool
-    at: tuple[int, int]
+    function: str  # `#count`, `#sum`, `#sum+`, `#min` or `#max`
+    elements: tuple[AggregateElement, ...]  # what is counted, summed or compared
+    guards: tuple[tuple[str, ClauseTerm], ...]  # pairs (sign, term) such that `term sign value` must hold
+    negated: bool  # whether `not` stands before it
+    at: tuple[int, int]  # line and column, from 1
 
 
 @dataclass(frozen=True)
 class ConditionalLiteral:
-    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold.
+    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold."""
 
-    Attributes
-    ----------
-    literal : the literal before the colon.
-    condition : the literals after it.
-    at : line and column, from 1.
-    """
-
-    literal: "Literal"
-    condition: tuple["Literal", ...]
-    at: tuple[int, int]
+    literal: "Literal"  # the literal before the colon
+    condition: tuple["Literal", ...]  # the literals after it
+    at: tuple[int, int]  # line and column, from 1
 
 
 @dataclass(frozen=True)
 class BooleanLiteral:
-    """The literal `#true` or `#false`.
+    """The literal `#true` or `#false`."""
 
-    Attributes
-    ----------
-    value : whether it is true, a `not` before it included.
-    at : line and column, from 1.
-    """
-
-    value: bool
-    at: tuple[int, int]
+    value: bool  # whether it is true, a `not` before it included
+    at: tuple[int, int]  # line and column, from 1
 
 
 Literal = Atom | Comparison | Aggregate | ConditionalLiteral | BooleanLiteral  # a part of a body
@@ -221,37 +148,15 @@ Literal = Atom | Comparison | Aggregate | ConditionalLiteral | BooleanLiteral  #
 
 @dataclass(frozen=True)
 class Clause:
-    """A rule without pools.
+    """A rule without pools."""
 
-    Attributes
-    ----------
-    head : the atom that it states; None for a constraint or a query.
-    body : its literals.
-    at : line and column, from 1.
-    """
-
-    head: Atom | None
-    body: tuple[Literal, ...]
-    at: tuple[int, int]
+    head: Atom | None  # the atom that it states; None for a constraint or a query
+    body: tuple[Literal, ...]  # its literals
+    at: tuple[int, int]  # line and column, from 1
 
 
 def translate_rule(rule: AST) -> list[Clause]:
-    """Return a rule as clauses, one for each choice of values in its pools.
-
-    Parameters
-    ----------
-    rule : a rule of clingo's syntax tree, with one atom as its head, or none.
-
-    Returns
-    -------
-    The clauses, at least one, in the order of the choices. Each holds the head atom (None for a constraint), the
-    literals of the body in the order of the text, followed by comparisons for intervals in arguments, and its place.
-    `at` of each part counts lines and columns from 1.
-
-    Raises
-    ------
-    ClauseError : the rule has another head, or a construct that is not supported.
-    """
+    """Return a rule as clauses, one for each choice of values in its pools."""
     return [_Translator().clause(part) for part in rule.unpool()]
 
 
@@ -262,30 +167,22 @@ def place_of(node: AST) -> tuple[int, int]:
 
 
 class _Translator:
-    """Translates one rule of clingo's syntax tree, without pools.
-
-    The comparisons for intervals in arguments are collected in `_intervals`, until their conjunction is complete.
-    """
+    """Translates one rule of clingo's syntax tree, without pools."""
 
     def __init__(self) -> None:
         self._numbers = itertools.count()
         self._intervals: list[Literal] = []
 
     def clause(self, rule: AST) -> Clause:
-        """Return a rule without pools as a clause; raise ClauseError for what is not supported.
-
-        The clause holds the head atom (None for a constraint), the literals of the body in order, then a comparison for
-        each interval in an argument of the head, and the place of the rule.
-        """
+        """Return a rule without pools as a clause; raise ClauseError for what is not supported."""
+        # The clause holds the head atom (None for a constraint), the literals of the body in order, then a comparison
+        # for each interval in an argument of the head, and the place of the rule.
         head = self._head(rule.head)
         waiting, self._intervals = self._intervals, []
         return Clause(head, (*self._conjunction(rule.body), *waiting), place_of(rule))
 
     def _head(self, node: AST) -> Atom | None:
-        """Return the head atom, or None for a constraint; raise ClauseError for any other head.
-
-        The comparisons for intervals in its arguments are appended to `_intervals`.
-        """
+        """Return the head atom, or None for a constraint; raise ClauseError for any other head."""
         if node.ast_type == ASTType.Literal and node.sign == Sign.NoSign:
             if node.atom.ast_type == ASTType.BooleanConstant and not node.atom.value:
                 return None
@@ -294,11 +191,7 @@ class _Translator:
         raise ClauseError("a rule has one plain atom as its head here", place_of(node))
 
     def _conjunction(self, nodes: Iterable[AST]) -> tuple[Literal, ...]:
-        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments.
-
-        One literal for each of the nodes, in their order; () for none. An interval in an argument stands as a variable
-        of its own there, and its comparison is `variable = low..high`.
-        """
+        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments."""
         outer, self._intervals = self._intervals, []
         found = [self._literal(node) for node in nodes]
         found += self._intervals
@@ -306,11 +199,7 @@ class _Translator:
         return tuple(found)
 
     def _literal(self, node: AST) -> Literal:
-        """Return one literal; raise ClauseError for a theory atom.
-
-        It is an Atom, a Comparison, an Aggregate, a ConditionalLiteral or a BooleanLiteral, with its negation and its
-        place (line, column) from 1. Comparisons for intervals in an atom's arguments are appended to `_intervals`.
-        """
+        """Return one literal; raise ClauseError for a theory atom."""
         if node.ast_type == ASTType.ConditionalLiteral:
             condition = self._conjunction(node.condition)
             (literal, *intervals) = self._conjunction([node.literal])
@@ -330,10 +219,7 @@ class _Translator:
         raise ClauseError("theory atoms are not known here", at)
 
     def _atom(self, node: AST) -> Atom:
-        """Return an atom with its negations; raise ClauseError for classical negation, `-atom`.
-
-        It holds the predicate's name, the arguments as terms, the number of `not` before it (0 to 2), and its place.
-        """
+        """Return an atom with its negations; raise ClauseError for classical negation, `-atom`."""
         found, at = node.atom.symbol, place_of(node.atom.symbol)
         if found.ast_type == ASTType.UnaryOperation:
             raise ClauseError("classical negation is not known here", at, "write not, for what is not believed")
@@ -342,12 +228,7 @@ class _Translator:
         return Atom(found.name, tuple(map(self._term, found.arguments)), int(node.sign), at)
 
     def _aggregate(self, node: AST, negated: bool, at: tuple[int, int]) -> Aggregate:
-        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard.
-
-        Guards are the comparisons of its value with a term: the left one first, 0 to 2. The elements keep their order.
-        `{ literal : condition }` becomes a `#count`. negated : whether `not` stands before it. at : its line and
-            column, from 1.
-        """
+        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard."""
         sides = ((node.left_guard, 0), (node.right_guard, 1))
         guards = [
             (
@@ -364,23 +245,15 @@ class _Translator:
         return Aggregate(AGGREGATE_FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
 
     def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> AggregateElement:
-        """Return an element of an aggregate: its tuple of terms, and its condition.
-
-        The condition is the literals in order, followed by the comparisons for intervals in them and in the terms.
-        """
+        """Return an element of an aggregate: its tuple of terms, and its condition."""
+        # The condition is the literals in order, followed by the comparisons for intervals in them and in the terms.
         outer, self._intervals = self._intervals, []
         found = tuple(map(self._term, terms))
         waiting, self._intervals = self._intervals, outer
         return AggregateElement(found, (*self._conjunction(condition), *waiting))
 
     def _choice(self, number: int, node: AST) -> AggregateElement:
-        """Return an element of `{ literal : condition }`; the tuple holds the literal's name and arguments.
-
-        The name is a string such as "room/1"; arguments follow for an atom without negation only. The element's
-        condition is the literal, then its condition.
-
-        number : the index of the element, which identifies it when it is no atom.
-        """
+        """Return an element of `{ literal : condition }`; the tuple holds the literal's name and arguments."""
         literals = self._conjunction([node.literal, *node.condition])
         at = place_of(node)
         first = literals[0]
@@ -389,15 +262,7 @@ class _Translator:
         return AggregateElement((Constant(clingo.String(name), at), *parts), literals)
 
     def _term(self, node: AST, whole: bool = False) -> ClauseTerm:
-        """Return a term; raise ClauseError for a function of Python (@name).
-
-        It is a Constant (an integer or a clingo symbol), a Variable, an Operation (arithmetic or an interval) or a
-        Compound (a name with arguments, or a tuple), with its place.
-        An interval that is not wanted as such is replaced by a variable; the comparison of this variable with the
-        interval is appended to `_intervals`.
-
-        whole : whether the term may be an interval, because it is one side of a comparison.
-        """
+        """Return a term; raise ClauseError for a function of Python (@name)."""
         at = place_of(node)
         if node.ast_type == ASTType.SymbolicTerm:
             value = node.symbol
@@ -426,10 +291,7 @@ class _Translator:
 
 
 def variables_of(part: Any) -> Iterator[str]:
-    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included.
-
-    A name is yielded as often as it appears; `_` has names such as `?1`, an interval's variable such as `.1`.
-    """
+    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included."""
     if isinstance(part, Variable):
         yield part.name
     elif isinstance(part, tuple):
@@ -448,12 +310,7 @@ def variables_of(part: Any) -> Iterator[str]:
 
 
 def global_variables(body: Sequence[Literal]) -> dict[str, None]:
-    """Return the named variables of a body, in the order in which they appear.
-
-    A variable that appears only inside the elements of aggregates or in conditional literals is local, and left out. So
-    are `_` and the variables of intervals. The result is a dictionary from each name to None, which serves as an
-    ordered set.
-    """
+    """Return the named variables of a body, in the order in which they appear."""
     found: dict[str, None] = {}
     for literal in body:
         if isinstance(literal, Aggregate):
@@ -465,10 +322,7 @@ def global_variables(body: Sequence[Literal]) -> dict[str, None]:
 
 
 def atoms_of(part: Any) -> Iterator[Atom]:
-    """Yield the atoms in a literal or a tuple of them, those in aggregates and conditions included, in order.
-
-    The order is that of the text; an atom is yielded as often as it appears, negated or not.
-    """
+    """Yield the atoms in a literal or a tuple of them, those in aggregates and conditions included, in order."""
     if isinstance(part, Atom):
         yield part
     elif isinstance(part, tuple):

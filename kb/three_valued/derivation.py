@@ -10,21 +10,9 @@ from kb.three_valued.term_values import value_of
 
 
 def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
-    """Add to `beliefs` all atoms that the clauses derive.
-
-    Predicates are evaluated in the order of their dependencies, so that `not` reads complete predicates (stratified
-    negation).
-
-    Parameters
-    ----------
-    clauses : rules with heads, in any order.
-    beliefs : the facts; changed: derived atoms are added until no more are new, each as certain or as one that may
-        hold once more is known.
-
-    Raises
-    ------
-    ClauseError : a predicate is defined through its own negation, or arithmetic has no result.
-    """
+    """Add to `beliefs` all atoms that the clauses derive."""
+    # Predicates are evaluated in the order of their dependencies, so that `not` reads complete predicates (stratified
+    # negation).
     for group in _dependency_groups(clauses):
         grows = True
         while grows:
@@ -32,11 +20,7 @@ def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
 
 
 def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
-    """Add to `beliefs` the atoms that a clause derives, and return how many of them are new: a count, 0 for none.
-
-    clause : a rule with a head.
-    possible : whether to add those that may hold, rather than those that are certain.
-    """
+    """Add to `beliefs` the atoms that a clause derives, and return how many of them are new: a count, 0 for none."""
     assert clause.head is not None
     head, fixed_confidences = clause.head, fixed_confidence_variables(clause.body, ())
     found = list(find_bindings(clause.body, {}, beliefs, possible, fixed_confidences))
@@ -45,13 +29,8 @@ def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
 
 
 def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
-    """Return the clauses in groups that define each other, each group after those on which it depends.
-
-    Every clause, all of which have heads, is in exactly one group. Within a group the clauses keep their order; groups
-    that do not depend on each other are sorted by the number of predicates on which they depend, then by name.
-
-    Raises ClauseError when a group depends on its own negation.
-    """
+    """Return the clauses in groups that define each other, each group after those on which it depends."""
+    # Raises ClauseError when a group depends on its own negation.
     heads = {clause.head.signature: clause for clause in clauses if clause.head is not None}
     uses: dict[Signature, set[Signature]] = {head: set() for head in heads}
     for clause in clauses:
@@ -72,12 +51,7 @@ def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
 
 
 def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Signature]:
-    """Return all predicates on which a predicate depends, directly or not; itself only if it depends on itself.
-
-    A predicate is (name, number of arguments).
-
-    uses : predicate -> the predicates in the bodies of its clauses, as far as clauses define them.
-    """
+    """Return all predicates on which a predicate depends, directly or not; itself only if it depends on itself."""
     found: set[Signature] = set()
     edge = [head]
     while edge:
@@ -88,10 +62,7 @@ def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Si
 
 
 def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
-    """Raise ClauseError when a group of predicates depends on the negation of one of them.
-
-    group : their clauses. mutual : the predicates.
-    """
+    """Raise ClauseError when a group of predicates depends on the negation of one of them."""
     for clause in group:
         for atom in _negated_atoms(clause.body):
             if atom.signature in mutual:
@@ -100,10 +71,7 @@ def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
 
 
 def _negated_atoms(body: Iterable[Literal]) -> Iterable[Atom]:
-    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals.
-
-    In the order of the text, each as often as it appears. `body` are the literals of a rule.
-    """
+    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals."""
     for literal in body:
         if isinstance(literal, Atom) and literal.negations:
             yield literal

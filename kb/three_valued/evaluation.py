@@ -60,28 +60,7 @@ def find_bindings(
     possible: bool,
     fixed_confidences: frozenset[str] = NO_VARIABLES,
 ) -> Iterator[Bindings]:
-    """Yield the bindings of variables with which all literals of a body hold, or may hold.
-
-    Parameters
-    ----------
-    body : the literals, in any order.
-    given : the values of variables that are bound already, by name.
-    beliefs : the believed facts, and the atoms that rules derived; its cache of orders is filled.
-    possible : whether to use the possible mode, and yield the bindings with which the body may hold; else only those
-        with which it certainly holds.
-    fixed_confidences : names of variables for confidences that are read as they are believed now. In the possible mode
-        every other confidence between 0 and 100 percent may also be any other number of percent.
-
-    Yields
-    ------
-    One mapping for each way to satisfy the body: the values of all variables by name, those of `given` included. Values
-    are integers, clingo symbols or `Unknown`, which stands for a value not known, with bounds for a number. The order
-    is that of the rows of facts; a binding may be yielded several times.
-
-    Raises
-    ------
-    ClauseError : nothing binds a variable, or arithmetic has no result.
-    """
+    """Yield the bindings of variables with which all literals of a body hold, or may hold."""
     key = id(body), frozenset(given)
     if key not in beliefs.join_orders:
         # The body is kept, too: as long as it exists, no other body has its id.
@@ -91,26 +70,13 @@ def find_bindings(
 
 
 class _Search:
-    """A search through the literals of a body, one after the other.
-
-    Attributes
-    ----------
-    beliefs : the believed facts.
-    possible : whether it finds the bindings with which the body may hold, rather than certainly holds.
-    fixed_confidences : names of variables for confidences that are read as they are believed now.
-
-    Bindings are mappings from the name of a variable to its value: an integer, a clingo symbol, or an `Unknown`.
-    """
+    """A search through the literals of a body, one after the other."""
 
     def __init__(self, beliefs: Beliefs, possible: bool, fixed_confidences: frozenset[str]) -> None:
         self.beliefs, self.possible, self.fixed_confidences = beliefs, possible, fixed_confidences
 
     def search(self, order: Sequence[Literal], at: int, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings, `given` included, with which the literals from index `at` on hold or may hold.
-
-        `order` are the literals of the body, each after those that bind its variables; beyond the last one `given` is
-        yielded. A binding may be yielded several times.
-        """
+        """Yield the bindings, `given` included, with which the literals from index `at` on hold or may hold."""
         if at == len(order):
             yield given
             return
@@ -118,10 +84,8 @@ class _Search:
             yield from self.search(order, at + 1, found)
 
     def satisfy(self, literal: Literal, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings, `given` included, with which one literal holds or may hold.
-
-        One for each way to satisfy an atom or an assignment `X = ...`; at most one, for any other literal.
-        """
+        """Yield the bindings, `given` included, with which one literal holds or may hold."""
+        # One for each way to satisfy an atom or an assignment `X = ...`; at most one, for any other literal.
         if isinstance(literal, Atom):
             if literal.negations == 0:
                 yield from self.matches(literal, given, self.possible)
@@ -138,22 +102,14 @@ class _Search:
             yield given
 
     def passes(self, truth: TruthValue) -> bool:
-        """Return whether a truth value suffices in this mode: True always, None (not known) in the possible mode.
-
-        False never suffices. The possible mode looks for what may hold once more is known, the certain mode for what
-        holds by the facts as they are believed now.
-        """
+        """Return whether a truth value suffices in this mode: True always, None (not known) in the possible mode."""
         return truth is True or (self.possible and truth is None)
 
     # ---- atoms ----
 
     def matches(self, atom: Atom, given: Bindings, possible: bool) -> Iterator[Bindings]:
-        """Yield the bindings, `given` included, with which an atom without negation holds; one for each matching row.
-
-        The rows of its predicate come in the order of `Beliefs.rows`, certain ones first.
-
-        possible : whether to yield also those with which it only may hold.
-        """
+        """Yield the bindings, `given` included, with which an atom without negation holds."""
+        # One for each matching row.
         fixed = [self.settled_value(part, given) for part in atom.parts]
         for row in self.beliefs.rows(atom.signature, fixed, possible, self.reads_fixed_confidence(atom)):
             found = self.unify_all(atom.parts, row, given, possible)
@@ -163,14 +119,8 @@ class _Search:
     def unify_all(
         self, terms: Sequence[ClauseTerm], row: Sequence[Value], given: Bindings, possible: bool
     ) -> Bindings | None:
-        """Return the bindings, `given` included, with which all terms have the values of a row.
-
-        None when there are none. Bindings are the values of variables by name.
-
-        terms, row : the terms, and the value that each must have; of equal length.
-        given : the bindings before; they are not changed.
-        possible : whether values that may be equal count as equal.
-        """
+        """Return the bindings, `given` included, with which all terms have the values of a row."""
+        # None when there are none.
         found: Bindings | None = given
         for term, value in zip(terms, row, strict=True):
             if found is not None:
@@ -178,55 +128,32 @@ class _Search:
         return found
 
     def reads_fixed_confidence(self, atom: Atom) -> bool:
-        """Return whether an atom's last argument is a variable for a confidence that is read as it is believed now.
-
-        False when the last argument is no variable, or is none of `fixed_confidences`: then the confidence may change.
-        """
+        """Return whether an atom's last argument is a variable for a confidence that is read as it is believed now."""
         return (
             bool(atom.parts) and isinstance(atom.parts[-1], Variable) and atom.parts[-1].name in self.fixed_confidences
         )
 
     def truth_of_negated(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return the truth of the literal `not atom`, or `not not atom` (by `atom.negations`); None when not known.
-
-        True when the literal certainly holds, False when it cannot. A variable `_` in the atom matches anything.
-
-        given : the values of the variables that are bound, by name.
-        """
+        """Return the truth of the literal `not atom`, or `not not atom` (by `atom.negations`); None when not known."""
         held = self.truth_of_atom(atom, given)
         return held if held is None or atom.negations == 2 else not held
 
     def truth_of_atom(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return whether an atom, its negations left out, holds for some values of its unbound variables.
-
-        True when it certainly does, False when it cannot; None when that is not known.
-
-        given : the values of the variables that are bound, by name.
-        """
+        """Return whether an atom, its negations left out, holds for some values of its unbound variables."""
+        # None when that is not known.
         if next(self.matches(atom, given, False), None) is not None:
             return True
         return None if next(self.matches(atom, given, True), None) is not None else False
 
     def settled_value(self, term: ClauseTerm, given: Bindings) -> Value:
-        """Return the value of an argument; None when a variable in it is unbound, or its value is not known.
-
-        The value is an integer or a clingo symbol. ClauseError for arithmetic without a result.
-
-        term : the argument. given : the values of the variables that are bound, by name.
-        """
+        """Return the value of an argument; None when a variable in it is unbound, or its value is not known."""
         if set(variables_of(term)) <= given.keys():
             value = value_of(term, given)
             return None if isinstance(value, Unknown) else value
         return None
 
     def unify(self, term: ClauseTerm, value: Value, given: Bindings, possible: bool) -> Bindings | None:
-        """Return the bindings with which a term has a value; None when there are none.
-
-        The bindings include `given`; an unknown value of a bound variable is replaced by a known one that matches.
-
-        possible : whether values that may be equal count as equal. Else an unknown value matches nothing but itself and
-            an unbound variable, which takes it.
-        """
+        """Return the bindings with which a term has a value; None when there are none."""
         if isinstance(term, Variable):
             before = given.get(term.name)
             if before is None:
@@ -243,21 +170,13 @@ class _Search:
         return given if self.may_equal(value_of(term, given), value, possible) else None
 
     def may_equal(self, a: Value, b: Value, possible: bool) -> bool:
-        """Return whether two values are certainly equal; with `possible`, whether they may be equal.
-
-        a, b : integers, clingo symbols or `Unknown` (a value not known).
-        """
+        """Return whether two values are certainly equal; with `possible`, whether they may be equal."""
         truth = compare("=", a, b, self.beliefs.known_names)
         return truth is True or (possible and truth is None)
 
     def unify_compound(self, term: Compound, value: Value, given: Bindings, possible: bool) -> Bindings | None:
-        """Return the bindings, `given` included, with which a term with arguments has a value.
-
-        None when there are none. Bindings are the values of variables by name.
-
-        value : an integer, a clingo symbol or an `Unknown`.
-        possible : whether an unknown value, that is no number and no new name, matches.
-        """
+        """Return the bindings, `given` included, with which a term with arguments has a value."""
+        # None when there are none.
         if isinstance(value, Unknown):
             return given if possible and value.low is None and not value.new else None
         if isinstance(value, int) or value.type != clingo.SymbolType.Function:
@@ -267,13 +186,7 @@ class _Search:
         return self.unify_all(term.parts, [from_clingo(inner) for inner in value.arguments], given, possible)
 
     def unify_inverse(self, term: Operation, value: Value, given: Bindings, possible: bool) -> Bindings | None:
-        """Return the bindings with which arithmetic with one unbound variable has a value; None when there are none.
-
-        The arithmetic is inverted: X in `X + 1` is computed from the sum. The bindings include `given`.
-
-        possible : whether a product of which a factor or the value is unknown matches, with an unknown number for the
-            variable; else it does not.
-        """
+        """Return the bindings with which arithmetic with one unbound variable has a value; None when there are none."""
         if not isinstance(value, int | Unknown) or (isinstance(value, Unknown) and value.low is None):
             return None
         if len(term.parts) == 1:
@@ -300,11 +213,7 @@ class _Search:
     # ---- comparisons ----
 
     def satisfy_comparison(self, literal: Comparison, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings, `given` included, with which a comparison holds or may hold; `X = term` binds X.
-
-        One for each value of the term, ascending for an interval; at most one when the comparison binds nothing.
-        Unknown values are narrowed to those with which it may hold.
-        """
+        """Yield the bindings, `given` included, with which a comparison holds or may hold; `X = term` binds X."""
         found = assignment(literal, set(given))
         if found is not None:
             pattern, source = found
@@ -318,13 +227,8 @@ class _Search:
             yield self.narrow_bindings(literal, given) if truth is None else given
 
     def truth_of_comparison(self, literal: Comparison, given: Bindings) -> TruthValue:
-        """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not.
-
-        None when that is not known.
-
-        literal : the chain `first sign term sign term ...`. given : the values of the variables that are bound, by
-            name.
-        """
+        """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not."""
+        # None when that is not known.
         truth: TruthValue = True
         left = literal.first
         for sign, right in literal.rest:
@@ -334,14 +238,8 @@ class _Search:
         return truth if not literal.negated or truth is None else not truth
 
     def truth_of_pair(self, sign: str, left: ClauseTerm, right: ClauseTerm, given: Bindings) -> TruthValue:
-        """Return the truth of one comparison; between intervals, whether it holds for some of their numbers.
-
-        None when it is not known.
-
-        sign : the operator between left and right, in ASP syntax.
-        left, right : the terms, all of whose variables are bound.
-        given : the values of the variables that are bound, by name.
-        """
+        """Return the truth of one comparison; between intervals, whether it holds for some of their numbers."""
+        # None when it is not known.
         names = self.beliefs.known_names
         firsts, seconds = values_of(left, given), values_of(right, given)
         pairs = product(deciding_numbers(firsts, seconds), deciding_numbers(seconds, firsts))
@@ -349,11 +247,7 @@ class _Search:
         return True if True in truths else None if None in truths else False
 
     def narrow_bindings(self, literal: Comparison, given: Bindings) -> Bindings:
-        """Return the bindings with unknown values narrowed to those for which a comparison may hold.
-
-        A negated comparison, or a chain of several, narrows nothing: then `given` itself is returned. Else a new
-        mapping from the names of all bound variables to their values.
-        """
+        """Return the bindings with unknown values narrowed to those for which a comparison may hold."""
         if literal.negated or len(literal.rest) != 1:
             return given
         ((sign, right),) = literal.rest
@@ -366,10 +260,7 @@ class _Search:
     # ---- aggregates and conditions ----
 
     def truth_of_conditional(self, literal: ConditionalLiteral, given: Bindings) -> TruthValue:
-        """Return whether the literal holds wherever the condition holds; None when that is not known.
-
-        True also when the condition holds nowhere. `given` has the values of the variables bound outside of it.
-        """
+        """Return whether the literal holds wherever the condition holds; None when that is not known."""
         fixed_confidences = self.fixed_confidences | fixed_confidence_variables(literal.condition, (literal.literal,))
         truth: TruthValue = True
         for possible in (False, True):
@@ -386,11 +277,10 @@ class _Search:
         return truth
 
     def satisfy_aggregate(self, literal: Aggregate, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings, `given` included, with which an aggregate holds or may hold; a guard `X = ...` binds X.
-
-        At most one is yielded; in the certain mode none where the value that X would get is not certain. Bindings are
-        the values of variables by name. Raises ClauseError for a value beyond 32 bits.
-        """
+        """Yield the bindings, `given` included, with which an aggregate holds or may hold."""
+        # A guard `X = ...` binds X.
+        # At most one is yielded; in the certain mode none where the value that X would get is not certain. Raises
+        # ClauseError for a value beyond 32 bits.
         outer = set(given)
         tally = Tally(literal.function)
         for element in literal.elements:
@@ -411,11 +301,7 @@ class _Search:
             yield found
 
     def count_element(self, element: AggregateElement, given: Bindings, tally: Tally) -> None:
-        """Add to `tally` the tuples of one element of an aggregate: certain ones, and those that only may be there.
-
-        One for each binding with which the element's condition holds, or may hold. `given` has the values of the
-        variables bound outside of the aggregate; `tally` is changed.
-        """
+        """Add to `tally` the tuples of one element of an aggregate: certain ones, and those that only may be there."""
         fixed_confidences = self.fixed_confidences | fixed_confidence_variables(element.condition, element.terms)
         for possible in (False, True):
             for found in find_bindings(element.condition, given, self.beliefs, possible, fixed_confidences):
@@ -423,14 +309,7 @@ class _Search:
 
 
 def fixed_confidence_variables(body: Sequence[Literal], given_out: Any) -> frozenset[str]:
-    """Return the names of the variables that are passed on, or compared with other variables.
-
-    A confidence in such a variable is read as it is believed now: it is a value to report, not a condition that may
-    change.
-
-    body : the literals; of these only comparisons with two or more variables count.
-    given_out : a term, a literal or a tuple of them, whose values are reported; () for none.
-    """
+    """Return the names of the variables that are passed on, or compared with other variables."""
     found = set(variables_of(given_out))
     for literal in body:
         if isinstance(literal, Comparison):

@@ -22,25 +22,7 @@ from kb.three_valued.uncertain_values import MIRRORED_SIGNS
 
 
 def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Literal, ...]:
-    """Return the literals of a body in an order in which they can be evaluated.
-
-    Literals that only test bound variables come first. A variable that is bounded by numbers on both sides, and bound
-    nowhere, gets an interval of its own.
-
-    Parameters
-    ----------
-    body : the literals.
-    given : the names of variables that are bound, which means that they have a value, before the first literal.
-
-    Returns
-    -------
-    All literals, each once, in the order of evaluation, with the comparisons for such intervals. Of several that can
-    come next, that with the most bound variables comes first; among equals, the first one in the body.
-
-    Raises
-    ------
-    ClauseError : no literal binds some variable.
-    """
+    """Return the literals of a body in an order in which they can be evaluated."""
     bound, left, order = set(given), list(body), []
     own = set(global_variables(body)) | {name for literal in body for name in _body_names(literal)}
     while left:
@@ -62,12 +44,7 @@ def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Liter
 
 
 def unsafe_variable_error(name: str, at: tuple[int, int]) -> ClauseError:
-    """Return the error that no literal binds a variable.
-
-    The error is returned, not raised.
-
-    name : the variable; one that stands for `_` or an interval is shown as `_`. at : line and column, from 1.
-    """
+    """Return the error that no literal binds a variable."""
     shown = "_" if name.startswith(("?", ".")) else name
     return ClauseError(f"nothing says what {shown} can be: it must be in an atom that holds", at)
 
@@ -82,10 +59,7 @@ def _body_names(literal: Literal) -> list[str]:
 
 
 def _needs(literal: Literal, own: set[str]) -> set[str]:
-    """Return the names of the variables that must be bound before a literal can be tested.
-
-    own : the names of the variables of the body itself, which are not local to an aggregate or a condition.
-    """
+    """Return the names of the variables that must be bound before a literal can be tested."""
     if isinstance(literal, Atom) and literal.negations:
         return {name for name in variables_of(literal) if not name.startswith("?")}
     if isinstance(literal, Aggregate | ConditionalLiteral):
@@ -94,11 +68,7 @@ def _needs(literal: Literal, own: set[str]) -> set[str]:
 
 
 def _can_bind(literal: Literal, bound: set[str], own: set[str]) -> bool:
-    """Return whether a literal can be evaluated now and binds variables by that.
-
-    bound : the names of the bound variables.
-    own : the names of the variables of the body itself, not local to an aggregate or a condition.
-    """
+    """Return whether a literal can be evaluated now and binds variables by that."""
     if isinstance(literal, Atom):
         return literal.negations == 0 and all(_matchable(part, bound) for part in literal.parts)
     if isinstance(literal, Aggregate):
@@ -108,10 +78,7 @@ def _can_bind(literal: Literal, bound: set[str], own: set[str]) -> bool:
 
 
 def _matchable(term: ClauseTerm, bound: set[str]) -> bool:
-    """Return whether a term can be matched with values, which inverts arithmetic with one unbound variable.
-
-    bound : the names of the bound variables.
-    """
+    """Return whether a term can be matched with values, which inverts arithmetic with one unbound variable."""
     if isinstance(term, Constant | Variable):
         return True
     if isinstance(term, Compound):
@@ -120,12 +87,7 @@ def _matchable(term: ClauseTerm, bound: set[str]) -> bool:
 
 
 def _invertible(term: Operation, bound: set[str]) -> bool:
-    """Return whether exactly one operand of `+`, `-` or `*` is unbound and can be computed from the result.
-
-    That operand is a variable, or again such arithmetic. False for all other operators.
-
-    bound : the names of the bound variables.
-    """
+    """Return whether exactly one operand of `+`, `-` or `*` is unbound and can be computed from the result."""
     open_ = [part for part in term.parts if not set(variables_of(part)) <= bound]
     if term.sign not in ("+", "-", "*") or len(open_) != 1:
         return False
@@ -134,14 +96,7 @@ def _invertible(term: Operation, bound: set[str]) -> bool:
 
 
 def assignment(literal: Comparison, bound: set[str]) -> tuple[ClauseTerm, ClauseTerm] | None:
-    """Return the pattern and the term that gives its value, for a comparison that binds variables; else None.
-
-    The result is (pattern, term) of the first `pattern = term` in the chain, either way round, of which the term is
-    bound and the pattern is not but can be matched. None also for a negated comparison. A pattern is a term with
-    unbound variables, which get their values from the other term.
-
-    bound : the names of the bound variables.
-    """
+    """Return the pattern and the term that gives its value, for a comparison that binds variables; else None."""
     if literal.negated:
         return None
     terms = [literal.first, *(term for _, term in literal.rest)]
@@ -156,11 +111,7 @@ def assignment(literal: Comparison, bound: set[str]) -> tuple[ClauseTerm, Clause
 
 
 def assigned_variable(guards: Iterable[tuple[str, ClauseTerm]], bound: set[str]) -> Variable | None:
-    """Return the variable to which an aggregate gives its value: that of the first guard `X = ...`, or None.
-
-    guards : pairs (sign, term) such that `term sign value of the aggregate` must hold.
-    bound : the names of the variables that are bound already, which do not count.
-    """
+    """Return the variable to which an aggregate gives its value: that of the first guard `X = ...`, or None."""
     for sign, term in guards:
         if sign == "=" and isinstance(term, Variable) and term.name not in bound:
             return term
@@ -168,14 +119,7 @@ def assigned_variable(guards: Iterable[tuple[str, ClauseTerm]], bound: set[str])
 
 
 def _bounding_interval(literals: Iterable[Literal], bound: set[str]) -> Comparison | None:
-    """Return `X = low..high` for a variable X that only comparisons with numbers bound; None when there is none.
-
-    Of several such variables, that of which a lower bound stands first in the text; the interval is the narrowest that
-    all these comparisons leave, within 32 bits.
-
-    literals : those that are left. bound : the names of the bound variables. clingo binds such variables in the same
-        way.
-    """
+    """Return `X = low..high` for a variable X that only comparisons with numbers bound; None when there is none."""
     lows: dict[str, int] = {}
     highs: dict[str, int] = {}
     for literal in literals:
@@ -198,11 +142,7 @@ def _bounding_interval(literals: Iterable[Literal], bound: set[str]) -> Comparis
 
 
 def _bound_by(literal: Literal, bound: set[str]) -> set[str]:
-    """Return the names of the variables to which a literal gives values; those of `bound` have one before.
-
-    Those of an atom without negation, all of them; those of the pattern of an assignment `X = ...`; the variable to
-    which an aggregate gives its value. The empty set for all else.
-    """
+    """Return the names of the variables to which a literal gives values; those of `bound` have one before."""
     if isinstance(literal, Atom):
         return set() if literal.negations else set(variables_of(literal))
     if isinstance(literal, Comparison):

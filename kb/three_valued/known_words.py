@@ -27,16 +27,7 @@ NO_PLACE = SourceSpan(1, 1, 1)  # the place of values that stand in no file
 
 
 def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> ConstantNames:
-    """Return the constants that facts have in each type of argument; all of them are accepted in queries.
-
-    Parameters
-    ----------
-    rows : by predicate (name, number of arguments), the arguments of each of its facts: integers or clingo symbols.
-
-    Returns
-    -------
-    The constants as text, by the name of the argument type. Numbers are left out.
-    """
+    """Return the constants that facts have in each type of argument; all of them are accepted in queries."""
     found: dict[str, set[str]] = {}
     for signature, stated in rows.items():
         slots = BELIEF_PREDICATES[signature].arguments if signature in BELIEF_PREDICATES else ()
@@ -48,14 +39,7 @@ def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Const
 
 
 def check_body(body: Sequence[Literal], known: Collection[Signature], names: ConstantNames) -> None:
-    """Raise ClauseError for an unknown predicate, or for a constant that cannot stand where it does.
-
-    Parameters
-    ----------
-    body : the literals of a query or a rule.
-    known : all predicates that exist.
-    names : the constants in facts as text, by the name of the argument type; they are accepted in queries, too.
-    """
+    """Raise ClauseError for an unknown predicate, or for a constant that cannot stand where it does."""
     for atom in atoms_of(tuple(body)):
         check_predicate(atom, known)
         if atom.signature in BELIEF_PREDICATES:
@@ -79,12 +63,7 @@ def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
 
 
 def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -> None:
-    """Raise ClauseError when a term is a constant that an argument type does not accept.
-
-    slot : the type.
-    term : the argument; anything but a constant is accepted.
-    names : constants that are accepted, too, as text by the name of the type.
-    """
+    """Raise ClauseError when a term is a constant that an argument type does not accept."""
     if not isinstance(term, Constant) or str(term.value) in names.get(slot.name, ()):
         return
     complaint = slot.check(as_fact_term(term.value))
@@ -97,11 +76,8 @@ def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -
 
 
 def as_fact_term(value: Value) -> Term:
-    """Return a known value, an integer or a clingo symbol, as a term of a fact file, which argument types can check.
-
-    It is a number, a text, or a name with its arguments. Its place is NO_PLACE, since it stands in no file. A value
-    that no fact file can express becomes a name with its text.
-    """
+    """Return a known value, an integer or a clingo symbol, as a term of a fact file, which argument types can check."""
+    # Its place is NO_PLACE, since it stands in no file.
     if isinstance(value, int):
         return Number(value, NO_PLACE)
     if value.type == clingo.SymbolType.String:
@@ -115,11 +91,7 @@ def as_fact_term(value: Value) -> Term:
 
 
 def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
-    """Yield a body, and each conjunction inside it together with the atoms around it; the body itself first.
-
-    Each is a tuple of literals: its own first, then the atoms of the body around it. Those inside are the conditions of
-    elements, and a conditional literal with its condition.
-    """
+    """Yield a body, and each conjunction inside it together with the atoms around it; the body itself first."""
     yield tuple(body)
     for literal in body:
         inner = [element.condition for element in literal.elements] if isinstance(literal, Aggregate) else []
@@ -129,11 +101,8 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
 
 
 def types_of_variables(body: Sequence[Literal]) -> Iterator[tuple[str, ArgumentType]]:
-    """Yield the name of each variable that stands in an atom of the world model, with the type of that argument.
-
-    Atoms of the body itself count, not those inside aggregates and conditions; numbers count, too. A variable comes
-    once for each place in which it stands, the places in order.
-    """
+    """Yield the name of each variable that stands in an atom of the world model, with the type of that argument."""
+    # A variable comes once for each place in which it stands, the places in order.
     for atom in body:
         if isinstance(atom, Atom) and atom.signature in BELIEF_PREDICATES:
             for slot, part in zip(BELIEF_PREDICATES[atom.signature].arguments, atom.parts, strict=True):
@@ -142,11 +111,8 @@ def types_of_variables(body: Sequence[Literal]) -> Iterator[tuple[str, ArgumentT
 
 
 def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
-    """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out.
-
-    One pair for each such argument, in order. Nothing for a predicate that is not of the world model. An argument type
-    tells which terms fit, and its name for messages.
-    """
+    """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out."""
+    # One pair for each such argument, in order.
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     for slot, part in zip(slots, atom.parts, strict=False):
         if isinstance(part, Variable) and slot.limits is None:
@@ -154,10 +120,7 @@ def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
 
 
 def _equated(literals: Iterable[Literal]) -> Iterator[tuple[str, Constant]]:
-    """Yield the name of each variable that is compared with a constant by `=` or `!=`, and the constant.
-
-    One pair for each such comparison, in the order of the text, whether it is negated or not.
-    """
+    """Yield the name of each variable that is compared with a constant by `=` or `!=`, and the constant."""
     for literal in literals:
         if not isinstance(literal, Comparison):
             continue

@@ -14,20 +14,7 @@ TASK_SIGNATURES = frozenset({PARAMETER_SIGNATURE, ("bound", 2), *PLAN_PREDICATES
 
 
 class Beliefs:
-    """The facts of a world model, with the atoms that rules derive.
-
-    A row is the tuple of the arguments of one fact of a predicate.
-
-    Parameters
-    ----------
-    facts : pairs (predicate name, row); the arguments in a row are integers or clingo symbols.
-
-    Attributes
-    ----------
-    known_names : the names of all things that facts are about, as text.
-    everything_seen : whether no part of the table is unseen, so that no new things can appear.
-    join_orders : a cache of kb.three_valued.evaluation: bodies and their orders of evaluation.
-    """
+    """The facts of a world model, with the atoms that rules derive."""
 
     def __init__(self, facts: Iterable[tuple[str, FactRow]]) -> None:
         self.join_orders: dict[tuple[int, frozenset[str]], Any] = {}  # written by kb.three_valued.evaluation
@@ -50,22 +37,11 @@ class Beliefs:
         self._parameters = sorted(row[0] for row in self._rows.get(PARAMETER_SIGNATURE, ()))
 
     def signatures(self) -> dict[Signature, list[FactRow]]:
-        """Return the predicates (name, number of arguments) that certainly hold of something, each with its rows.
-
-        These are those of facts, `object/1` where an object is believed in, and those that rules derived. A row is the
-        tuple of the arguments, integers or clingo symbols; rows come in the order in which they were added.
-        """
+        """Return the predicates (name, number of arguments) that certainly hold of something, each with its rows."""
         return {signature: list(rows) for signature, rows in self._rows.items()}
 
     def add_derived(self, signature: Signature, row: FactRow, possible: bool) -> bool:
-        """Add a row of a predicate that rules define. Return whether it is new.
-
-        A row that only may hold is not new when it holds certainly, or is covered by one that may hold already.
-
-        signature : the predicate (name, number of arguments).
-        row : its arguments.
-        possible : whether the row only may hold.
-        """
+        """Add a row of a predicate that rules define. Return whether it is new."""
         rows = (self._possible if possible else self._rows).setdefault(signature, {})
         if row in rows or (
             possible and (row in self._rows.get(signature, {}) or self._already_possible(signature, row))
@@ -77,10 +53,7 @@ class Beliefs:
         return True
 
     def _already_possible(self, signature: Signature, row: FactRow) -> bool:
-        """Return whether a row that may hold is covered by one, perhaps with unknown values, that may hold already.
-
-        signature : the predicate, (name, number of arguments). row : its arguments. Only derived rows are compared.
-        """
+        """Return whether a row that may hold is covered by one, perhaps with unknown values, that may hold already."""
         return any(
             all(_includes(a, b) for a, b in zip(other, row, strict=True)) for other in self._possible.get(signature, ())
         )
@@ -88,24 +61,7 @@ class Beliefs:
     def rows(
         self, signature: Signature, fixed: Sequence[Value], possible: bool, confidence_fixed: bool
     ) -> Iterator[FactRow]:
-        """Yield the rows of a predicate that hold; with `possible`, also those that may hold.
-
-        Parameters
-        ----------
-        signature : the predicate, (name, number of arguments).
-        fixed : for each argument its value when it is known, else None. Rows that differ in one of them may be left
-            out.
-        possible : whether to yield rows that only may hold.
-        confidence_fixed : True to read confidences as they are believed now. False to count also that they may change:
-            with `possible`, each fact with a confidence between 0 and 100 percent, both left out, is then yielded once
-            more, with an `Unknown` from 0 to 100 in the place of the confidence.
-
-        Yields
-        ------
-        One row at a time, the values of all arguments in order: integers, clingo symbols, or an `Unknown` (a value not
-        known, with bounds when it is a number). First the certain rows, each once; with `possible` then those that
-        rules derived as possible, those with an open confidence, and those of things not seen or not told of yet.
-        """
+        """Yield the rows of a predicate that hold; with `possible`, also those that may hold."""
         stated = list(self._stated(signature, fixed))
         yield from stated
         if not possible:
@@ -121,14 +77,7 @@ class Beliefs:
         yield from self._open_rows(signature, declared, fixed[declared.subject])
 
     def _stated(self, signature: Signature, fixed: Sequence[Value]) -> Iterable[FactRow]:
-        """Return the certain rows that agree with the first known argument; all of them when none is known.
-
-        In the order in which they were added; [] when there are none. Known arguments after the first one are not
-        compared.
-
-        signature : the predicate, (name, number of arguments).
-        fixed : for each argument its value when it is known, else None.
-        """
+        """Return the certain rows that agree with the first known argument; all of them when none is known."""
         rows = self._rows.get(signature, {})
         at = next((number for number, value in enumerate(fixed) if value is not None), None)
         if at is None:
@@ -141,16 +90,8 @@ class Beliefs:
         return index.get(fixed[at], [])
 
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
-        """Yield the rows that may hold for things not seen yet, and for known things without such a fact.
-
-        At most one row for all things not seen yet, with a new name as its subject; then one for each such known thing,
-        or for each such parameter of the task, sorted in clingo's order. All other arguments are `Unknown`. Nothing for
-        a predicate of which all facts are known.
-
-        signature : the predicate, (name, number of arguments).
-        declared : what the vocabulary says of the predicate: types of arguments, and how far it is open.
-        subject : the value of the argument that the fact is about; None when it is open.
-        """
+        """Yield the rows that may hold for things not seen yet, and for known things without such a fact."""
+        # None when it is open.
         if declared.open is Openness.NEVER:
             return
         if declared.open is Openness.UNBOUND:
@@ -167,23 +108,14 @@ class Beliefs:
                     yield self._row(declared, thing)
 
     def _row(self, declared: BeliefPredicate, subject: Value) -> FactRow:
-        """Return a row of which only the subject is known; all other values are `Unknown`.
-
-        They have the limits of their argument's type, if it has any, as bounds.
-
-        declared : what the vocabulary says of the predicate: types of arguments, index of the subject.
-        subject : the value of the argument that the fact is about, perhaps an `Unknown`.
-        """
+        """Return a row of which only the subject is known; all other values are `Unknown`."""
         values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
         values[declared.subject] = subject
         return tuple(values)
 
 
 def _includes(a: Value, b: Value) -> bool:
-    """Return whether the value `a` may be all that `b` may be; equal values include each other.
-
-    Both are integers, clingo symbols or `Unknown`; a known value includes nothing but itself.
-    """
+    """Return whether the value `a` may be all that `b` may be; equal values include each other."""
     if not isinstance(a, Unknown):
         return not isinstance(b, Unknown) and a == b
     if a.anything:

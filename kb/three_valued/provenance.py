@@ -30,18 +30,7 @@ from kb.tracing.syntax import ANY_NAME, JsonValues
 
 
 def certain_instances(clauses: Sequence[Clause], beliefs: Beliefs) -> JsonValues:
-    """Return the rule instances that certainly hold, as JSON values.
-
-    Parameters
-    ----------
-    clauses : rules with heads; the line of each is the number of its rule, from 1.
-    beliefs : the believed facts with all that these rules derive.
-
-    Returns
-    -------
-    "units": of each clause the index of its rule ("statement"), the names of its variables, and its literals; "on",
-    "heads" and "elements" as of kb.tracing.requests for the task "trace"; "atoms": all certain atoms.
-    """
+    """Return the rule instances that certainly hold, as JSON values."""
     found: JsonValues = {"units": [], "on": [], "heads": [], "elements": []}
     for number, clause in enumerate(clauses):
         assert clause.head is not None

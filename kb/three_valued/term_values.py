@@ -14,21 +14,7 @@ Bindings = Mapping[str, Value]  # the values of variables, by name
 
 
 def value_of(term: ClauseTerm, given: Bindings) -> Value:
-    """Return the value of a term whose variables are all bound.
-
-    Parameters
-    ----------
-    term : the term; no interval.
-    given : the values of the variables, by name.
-
-    Returns
-    -------
-    The value: an integer, a clingo symbol, or an `Unknown`.
-
-    Raises
-    ------
-    ClauseError : a variable is not bound, or arithmetic has no result.
-    """
+    """Return the value of a term whose variables are all bound."""
     if isinstance(term, Constant):
         return term.value
     if isinstance(term, Variable):
@@ -48,11 +34,8 @@ def value_of(term: ClauseTerm, given: Bindings) -> Value:
 
 
 def number_of(term: ClauseTerm, given: Bindings) -> Value:
-    """Return the value of a term that must be a number: an integer, or an `Unknown`.
-
-    An `Unknown` stands for a number that is not known, and may have bounds. Raises ClauseError for other values, and
-    for an unbound variable. given : the values of variables, by name.
-    """
+    """Return the value of a term that must be a number: an integer, or an `Unknown`."""
+    # Raises ClauseError for other values, and for an unbound variable.
     value = value_of(term, given)
     if isinstance(value, int | Unknown):
         return value
@@ -60,13 +43,8 @@ def number_of(term: ClauseTerm, given: Bindings) -> Value:
 
 
 def values_of(term: ClauseTerm, given: Bindings) -> Iterable[Value]:
-    """Return the values of a term: all numbers of an interval, a range; or one value, in a list.
-
-    A value is an integer, a clingo symbol or an `Unknown`. An interval of which an end is not known gives one unknown
-    number with bounds; one whose first end is greater than its last gives an empty range. Raises ClauseError for an
-    unbound variable and for arithmetic without a result. given : the values of variables, by
-    name.
-    """
+    """Return the values of a term: all numbers of an interval, a range; or one value, in a list."""
+    # Raises ClauseError for an unbound variable and for arithmetic without a result.
     if isinstance(term, Operation) and is_interval(term):
         low, high = (number_of(part, given) for part in term.parts)
         if isinstance(low, Unknown) or isinstance(high, Unknown):
@@ -82,21 +60,7 @@ def is_interval(term: ClauseTerm) -> bool:
 
 
 def deciding_numbers(values: Iterable[Value], others: Iterable[Value]) -> Iterable[Value]:
-    """Return those numbers of an interval that decide how it compares with other values.
-
-    These are its ends, and the ends of the other values that lie within it. Values that are no interval are returned
-    as they are.
-
-    Parameters
-    ----------
-    values : the numbers of the interval, a range; or any other values.
-    others : the values with which it is compared.
-
-    Returns
-    -------
-    For an interval with numbers: a list of integers, ascending, with which every comparison has the same truth value as
-    with all numbers of the interval. Else `values` itself.
-    """
+    """Return those numbers of an interval that decide how it compares with other values."""
     if not isinstance(values, range) or not values:
         return values
     if isinstance(others, range):

@@ -29,14 +29,7 @@ MIRRORED_SIGNS = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!
 
 
 class Unknown:
-    """A value that is not known.
-
-    Attributes
-    ----------
-    low, high : the bounds of a number, both included; None for a value that is no number.
-    new : whether it is the name of a thing not seen yet, and so differs from all known names.
-    anything : whether it may be a number or something else.
-    """
+    """A value that is not known."""
 
     __slots__ = ("anything", "high", "low", "new")
 
@@ -47,22 +40,12 @@ class Unknown:
 
 
 def as_clingo(value: Value) -> clingo.Symbol:
-    """Return a known value, an integer or a clingo symbol, as a clingo symbol.
-
-    clingo orders all symbols: numbers, names, strings, terms.
-    """
+    """Return a known value, an integer or a clingo symbol, as a clingo symbol."""
     return clingo.Number(value) if isinstance(value, int) else value
 
 
 def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> TruthValue:
-    """Return whether `a sign b` holds; None when that is not known.
-
-    Parameters
-    ----------
-    sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
-    a, b : values: integers, clingo symbols or `Unknown`; one `Unknown` object equals itself.
-    known : the names of all things seen, as text, from which new things differ.
-    """
+    """Return whether `a sign b` holds; None when that is not known."""
     if not isinstance(a, Unknown) and not isinstance(b, Unknown):
         if isinstance(a, int) and isinstance(b, int):
             return COMPARISON_OPERATORS[sign](a, b)
@@ -91,10 +74,7 @@ def bounds(value: Value) -> tuple[int, int] | None:
 
 
 def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
-    """Return whether `a sign b` holds for numbers of which only bounds (least, greatest) are known.
-
-    True when it does for all numbers within these bounds, False when for none, else None. The bounds are included.
-    """
+    """Return whether `a sign b` holds for numbers of which only bounds (least, greatest) are known."""
     if sign in (">", ">="):
         return _within(MIRRORED_SIGNS[sign], b, a)
     if sign in ("<", "<="):
@@ -105,12 +85,7 @@ def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
 
 
 def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
-    """Return whether two values certainly differ: a known name from a new thing, a number from anything else.
-
-    False when they may be equal.
-
-    a, b : integers, clingo symbols or `Unknown`, at least one of them `Unknown`. known : the names of all things seen.
-    """
+    """Return whether two values certainly differ: a known name from a new thing, a number from anything else."""
     if (bounds(a) is None) != (bounds(b) is None):
         return True
     pairs = ((a, b), (b, a))
@@ -118,13 +93,7 @@ def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
 
 
 def narrow(value: Unknown, sign: str, other: Value) -> Value:
-    """Return what an unknown value can still be where `value sign other` holds.
-
-    value : a number within bounds, or a value of which nothing is known. other : the value with which it is compared,
-        an integer, a clingo symbol or an `Unknown`. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
-
-    Returns `value` itself when the comparison does not narrow it, and a known value when only one is left.
-    """
+    """Return what an unknown value can still be where `value sign other` holds."""
     limits, least = bounds(value), bounds(other)
     if sign == "=" and not isinstance(other, Unknown):
         return other
@@ -139,22 +108,7 @@ def narrow(value: Unknown, sign: str, other: Value) -> Value:
 
 
 def calculate_uncertain(sign: str, *values: Value) -> Value:
-    """Return the result of an operation on numbers, some of which may be unknown.
-
-    Parameters
-    ----------
-    sign : the operator in ASP syntax.
-    values : one or two integers or `Unknown` numbers, the left operand first.
-
-    Returns
-    -------
-    An integer when all operands are known, else an `Unknown` with bounds, both included. The bounds are cut to those of
-    32-bit integers, and are these for all operators but `+`, `-` and `*`.
-
-    Raises
-    ------
-    CalculationError : the operands are known and there is no 32-bit result.
-    """
+    """Return the result of an operation on numbers, some of which may be unknown."""
     if not any(isinstance(value, Unknown) for value in values):
         return calculate(sign, *values)
     ends = [bounds(value) or (MIN_INT32, MAX_INT32) for value in values]

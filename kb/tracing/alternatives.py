@@ -9,24 +9,7 @@ from kb.tracing.syntax import JsonValues
 
 
 def weigh(grounded: GroundedProgram, answer: Sequence[str], heads: Sequence[str], with_none: bool) -> JsonValues:
-    """Return the costs of an answer, and those of the best answers with another one of the atoms of a choice.
-
-    Parameters
-    ----------
-    grounded : the program with its facts.
-    answer : the shown atoms of the answer.
-    heads : the atoms among which a rule chooses.
-    with_none : whether the choice of none of them is an alternative, too.
-
-    Returns
-    -------
-    JSON values: "chosen", the answer itself, and "others", one for each atom of `heads` that the answer does not hold,
-    and the last one for none of them, where an answer allows that. Each is a dictionary: "atom" (its text; '' for none
-    of them), "costs" (level and cost of each level of priority that has a price, the highest level first), "prices"
-    (unit, values of its variables, weight and level of each weak constraint that counts), "proved" (whether nothing
-    better was left out), and for an alternative that no answer holds "broken" in their place: unit and values of the
-    constraints that forbid it.
-    """
+    """Return the costs of an answer, and those of the best answers with another one of the atoms of a choice."""
     given = [clingo.parse_term(atom) for atom in answer]
     whole = grounded.priced_answer(given)
     symbols = [clingo.parse_term(atom) for atom in heads]

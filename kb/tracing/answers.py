@@ -18,35 +18,17 @@ class TraceError(Exception):
 
 
 class PricedAnswer(NamedTuple):
-    """The best answer set under assumptions.
+    """The best answer set under assumptions."""
 
-    Attributes
-    ----------
-    atoms : its shown atoms.
-    costs : (level, cost) of each level of priority with a price, the highest level first.
-    prices : what these costs consist of: (unit, values of its named variables, weight, level).
-    proved : whether it was proved that no answer is better.
-    """
-
-    atoms: frozenset[str]
-    costs: tuple[tuple[int, int], ...]
+    atoms: frozenset[str]  # its shown atoms
+    costs: tuple[tuple[int, int], ...]  # (level, cost) of each level of priority with a price, the highest level first
+    # What these costs consist of: (unit, values of its named variables, weight, level)
     prices: tuple[tuple[int, tuple[str, ...], int, int], ...]
-    proved: bool
+    proved: bool  # whether it was proved that no answer is better
 
 
 class GroundedProgram:
-    """A program with its facts, grounded by clingo.
-
-    Parameters
-    ----------
-    parts : the pieces of the program.
-    facts : its input facts, without full stops.
-
-    Attributes
-    ----------
-    parts, facts : as given.
-    program : the program taken apart.
-    """
+    """A program with its facts, grounded by clingo."""
 
     def __init__(self, parts: Sequence[ProgramPart], facts: Sequence[str]) -> None:
         self.parts, self.facts = tuple(parts), tuple(facts)
@@ -58,10 +40,8 @@ class GroundedProgram:
         self._relaxed: clingo.Control | None = None
 
     def whole_answer(self, answer: Iterable[str]) -> list[clingo.Symbol]:
-        """Return all atoms, also those not shown, of the answer set with the given shown atoms.
-
-        Raises TraceError when the program has no such answer set.
-        """
+        """Return all atoms, also those not shown, of the answer set with the given shown atoms."""
+        # Raises TraceError when the program has no such answer set.
         given = {clingo.parse_term(atom) for atom in answer}
         assumptions = self._shown_as(given)
         best: list[clingo.Symbol] = []
@@ -84,10 +64,8 @@ class GroundedProgram:
         return found
 
     def best_answer(self, assumptions: Assumptions = ()) -> PricedAnswer | None:
-        """Return the best answer set in which some atoms hold (True) or do not hold (False); None when there is none.
-
-        An atom that no rule can derive never holds.
-        """
+        """Return the best answer set in which some atoms hold (True) or do not hold (False)."""
+        # None when there is none.
         known = self._control.symbolic_atoms
         if any(value and known[symbol] is None for symbol, value in assumptions):
             return None
@@ -105,10 +83,8 @@ class GroundedProgram:
         return found[0]._replace(proved=proved) if found else None
 
     def broken_constraints(self, assumptions: Assumptions) -> list[tuple[int, tuple[str, ...]]] | None:
-        """Return the fewest constraints that are broken where some atoms hold: (unit, values of its variables).
-
-        [] when no constraint need be broken; None when there is no answer even without constraints.
-        """
+        """Return the fewest constraints that are broken where some atoms hold: (unit, values of its variables)."""
+        # None when there is no answer even without constraints.
         if self._relaxed is None:
             rules = [*relaxed_rules(self.program), *(f"#defined {n}/{a}." for n, a in self.program.defined)]
             self._relaxed = _grounded(rules, self.facts)
@@ -161,10 +137,7 @@ def _instance_text(parts: tuple[ProgramPart, ...]) -> str:
 
 
 def instances(parts: tuple[ProgramPart, ...], atoms: Iterable[clingo.Symbol]) -> list[clingo.Symbol]:
-    """Return the helping atoms (kb.tracing.instrument) of all instances of a program that hold in an answer set.
-
-    parts : the pieces of the program. atoms : all atoms of the answer set.
-    """
+    """Return the helping atoms (kb.tracing.instrument) of all instances of a program that hold in an answer set."""
     control = _grounded([_instance_text(parts)], [str(atom) for atom in atoms], messages_count=False)
     found = [atom for atom in control.symbolic_atoms if atom.symbol.name.startswith("trace__")]
     if all(atom.is_fact for atom in found):
@@ -180,11 +153,8 @@ def instances(parts: tuple[ProgramPart, ...], atoms: Iterable[clingo.Symbol]) ->
 
 
 def _grounded(texts: Sequence[str], facts: Sequence[str], messages_count: bool = True) -> clingo.Control:
-    """Return a program grounded with its facts.
-
-    Raises TraceError with clingo's first message. messages_count : whether messages about operations without a result
-    and atoms that no rule derives count.
-    """
+    """Return a program grounded with its facts."""
+    # Raises TraceError with clingo's first message.
     messages: list[str] = []
     control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:

@@ -11,28 +11,17 @@ Calculation = Callable[[Mapping[str, int]], int | None]  # from the values of va
 
 
 class Relation(NamedTuple):
-    """Two terms that are held against each other.
+    """Two terms that are held against each other."""
 
-    Attributes
-    ----------
-    left, right : the terms as functions of the values of variables.
-    names : the names of these variables.
-    sign : how clingo compares the terms.
-    fixed : the names whose values are not looked for.
-    """
-
-    left: Calculation
+    left: Calculation  # the terms as functions of the values of variables
     right: Calculation
-    names: tuple[str, ...]
-    sign: int
-    fixed: frozenset[str] = frozenset()
+    names: tuple[str, ...]  # the names of these variables
+    sign: int  # how clingo compares the terms
+    fixed: frozenset[str] = frozenset()  # the names whose values are not looked for
 
 
 def calculation(term: AST, constants: Mapping[str, clingo.Symbol]) -> Calculation:
-    """Return a term as a function of the values of its variables, which returns None where the term is no number.
-
-    constants : the values of `#const` definitions by name.
-    """
+    """Return a term as a function of the values of its variables, which returns None where the term is no number."""
     if term.ast_type == ASTType.SymbolicTerm:
         symbol = constants.get(str(term.symbol), term.symbol)
         number = symbol.number if symbol.type == clingo.SymbolType.Number else None
@@ -56,10 +45,7 @@ def names_in(term: AST) -> tuple[str, ...]:
 
 
 def turning_numbers(one: Relation, target: str, values: Mapping[str, int]) -> list[int]:
-    """Return the values of one variable on both sides of where a relation turns, given those of the others.
-
-    For an equation the value with which it holds. [] when it turns nowhere.
-    """
+    """Return the values of one variable on both sides of where a relation turns, given those of the others."""
 
     def difference(value: int) -> int | None:
         """Return by how much the left side exceeds the right one."""
@@ -78,10 +64,8 @@ def turning_numbers(one: Relation, target: str, values: Mapping[str, int]) -> li
 
 
 def _edge(difference: Callable[[int], int | None], least: int) -> int | None:
-    """Return the least number from which on a monotone function is at least `least`, or no longer at least that.
-
-    None when there is none up to GREATEST_NUMBER, or when the function has no value.
-    """
+    """Return the least number from which on a monotone function is at least `least`, or no longer at least that."""
+    # None when there is none up to GREATEST_NUMBER, or when the function has no value.
     low, high = -GREATEST_NUMBER, GREATEST_NUMBER
     first, last = difference(low), difference(high)
     if first is None or last is None:

@@ -30,47 +30,26 @@ PatternPart = clingo.Symbol | str  # a value, FREE_ARGUMENT or ANY_ARGUMENT
 
 
 class AtomPattern(NamedTuple):
-    """Atoms of one predicate.
+    """Atoms of one predicate."""
 
-    Attributes
-    ----------
-    name : the name of the predicate.
-    parts : of each argument its value, FREE_ARGUMENT (any value, which matters) or ANY_ARGUMENT (whatever its value).
-    """
-
-    name: str
+    name: str  # the name of the predicate
+    # Of each argument its value, FREE_ARGUMENT (any value, which matters) or ANY_ARGUMENT (whatever its value)
     parts: tuple[PatternPart, ...]
 
 
 class CandidateFacts(NamedTuple):
-    """Facts that might be given besides.
+    """Facts that might be given besides."""
 
-    Attributes
-    ----------
-    facts : the facts, those first that differ least from given ones.
-    removable : the given facts on which the wanted atom may rest.
-    by_choice : whether it may rest on a choice, so that costs matter.
-    cut : whether some facts were left out.
-    """
-
-    facts: tuple[str, ...]
-    removable: tuple[str, ...]
-    by_choice: bool
-    cut: bool
+    facts: tuple[str, ...]  # the facts, those first that differ least from given ones
+    removable: tuple[str, ...]  # the given facts on which the wanted atom may rest
+    by_choice: bool  # whether it may rest on a choice, so that costs matter
+    cut: bool  # whether some facts were left out
 
 
 def candidate_facts(
     program: ParsedProgram, facts: Sequence[clingo.Symbol], atoms: Iterable[clingo.Symbol], wanted: clingo.Symbol
 ) -> CandidateFacts:
-    """Return the input facts that might be given besides.
-
-    Parameters
-    ----------
-    program : the program taken apart; `#defined` declares its inputs.
-    facts : its input facts.
-    atoms : all atoms that hold.
-    wanted : the atom that does not hold.
-    """
+    """Return the input facts that might be given besides."""
     units, by_choice = _relevant_units(program, wanted)
     domains = Domains(program, units, [wanted, *facts, *atoms])
     patterns = _needed_patterns(program, units, domains, wanted)
@@ -144,10 +123,8 @@ def _signature(literal: AST) -> Signature:
 
 
 def _relevant_units(program: ParsedProgram, wanted: clingo.Symbol) -> tuple[list[int], bool]:
-    """Return the indices of the units on which an atom may rest, and whether a choice is among them.
-
-    When it is, the constraints and weak constraints are among them, too, for they decide what is chosen.
-    """
+    """Return the indices of the units on which an atom may rest, and whether a choice is among them."""
+    # When it is, the constraints and weak constraints are among them, too, for they decide what is chosen.
     reached = {(wanted.name, len(wanted.arguments))}
     found: set[int] = set()
     by_choice = False
@@ -172,10 +149,7 @@ def _relevant_units(program: ParsedProgram, wanted: clingo.Symbol) -> tuple[list
 def _needed_patterns(
     program: ParsedProgram, units: Sequence[int], domains: Domains, wanted: clingo.Symbol
 ) -> list[AtomPattern]:
-    """Return patterns of the atoms on which a wanted atom may rest, itself the first.
-
-    units : the indices of the units that count; constraints and weak constraints among them count from the start.
-    """
+    """Return patterns of the atoms on which a wanted atom may rest, itself the first."""
     counted = [program.units[number] for number in units]
     found: dict[AtomPattern, None] = {AtomPattern(wanted.name, tuple(wanted.arguments)): None}
     for unit in counted:
@@ -258,11 +232,7 @@ def _occurrences(unit: Unit) -> dict[str, int]:
 def _instances(
     pattern: AtomPattern, domains: Domains, facts: Sequence[clingo.Symbol]
 ) -> tuple[Iterable[clingo.Symbol], bool]:
-    """Return the facts of a pattern, and whether some were left out because they are too many.
-
-    An argument that does not matter has one of its known values. Of too many facts those are returned that differ from
-    a given fact in one argument, and as many as may be of those that differ in two.
-    """
+    """Return the facts of a pattern, and whether some were left out because they are too many."""
     options: list[Sequence[clingo.Symbol]] = []
     for index, part in enumerate(pattern.parts):
         known = domains.values((pattern.name, len(pattern.parts), index))

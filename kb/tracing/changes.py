@@ -23,34 +23,18 @@ MAX_GREEDY_CHECKS = 300  # changes that are tried while facts are taken away one
 
 
 class FoundChange(NamedTuple):
-    """A change of the input facts after which the wanted atom holds, or none.
+    """A change of the input facts after which the wanted atom holds, or none."""
 
-    Attributes
-    ----------
-    missing : facts that must be given besides.
-    in_way : given facts that must be taken away.
-    found : whether there is such a change; else both are ().
-    least : whether no change of fewer facts among the candidates would do.
-    """
-
-    missing: tuple[str, ...]
-    in_way: tuple[str, ...]
-    found: bool
-    least: bool
+    missing: tuple[str, ...]  # facts that must be given besides
+    in_way: tuple[str, ...]  # given facts that must be taken away
+    found: bool  # whether there is such a change; else both are ()
+    least: bool  # whether no change of fewer facts among the candidates would do
 
 
 def least_change(
     program: ParsedProgram, facts: Sequence[str], candidates: CandidateFacts, wanted: clingo.Symbol
 ) -> FoundChange:
-    """Return a change of least size with which the wanted atom holds, as far as the limits of the search allow.
-
-    Parameters
-    ----------
-    program : the program taken apart.
-    facts : its input facts.
-    candidates : what may be given besides, and which given facts matter.
-    wanted : the atom that shall hold.
-    """
+    """Return a change of least size with which the wanted atom holds, as far as the limits of the search allow."""
     switched = SwitchedProgram(program, facts, candidates, wanted)
     if not candidates.by_choice:
         return _as_found(switched, switched.least_of_one_answer(), True)
@@ -61,14 +45,7 @@ def least_change(
 
 
 class _ChoiceSearch:
-    """A search for changes where costs decide.
-
-    Attributes
-    ----------
-    switched : the program with switches.
-    wanted : the atom that shall hold.
-    possible : a change of least size after which some answer holds it, at whatever cost.
-    """
+    """A search for changes where costs decide."""
 
     def __init__(self, switched: SwitchedProgram, wanted: clingo.Symbol, possible: FactChange) -> None:
         self.switched, self.wanted, self.possible = switched, wanted, possible

@@ -12,20 +12,13 @@ from typing import Any, NamedTuple
 
 
 class SolverCall(NamedTuple):
-    """One answer of an encoding.
+    """One answer of an encoding."""
 
-    Attributes
-    ----------
-    encoding : the name of the encoding, without `.lp`.
-    facts : the atoms that it was given, as text without full stops.
-    answer : the shown atoms of the answer, as text, sorted; None when there was no answer.
-    about : what the candidates of the decision are, by their number in the facts: texts, or points of routes; ()
-        where nothing is said of them. Ready for JSON.
-    """
-
-    encoding: str
-    facts: tuple[str, ...]
-    answer: tuple[str, ...] | None
+    encoding: str  # the name of the encoding, without `.lp`.
+    facts: tuple[str, ...]  # the atoms that it was given, as text without full stops
+    answer: tuple[str, ...] | None  # the shown atoms of the answer, as text, sorted; None when there was no answer
+    # What the candidates of the decision are, by their number in the facts: texts, or points of routes; () where
+    # nothing is said of them. Ready for JSON.
     about: tuple[Any, ...] = ()
 
 
@@ -35,14 +28,7 @@ _open_record: ContextVar[list[SolverCall] | None] = ContextVar("open_record", de
 
 @contextmanager
 def record_decisions() -> Iterator[list[SolverCall]]:
-    """Record all answers of encodings in a `with` block.
-
-    Yields
-    ------
-    list of SolverCall
-        Grows by one entry for each answer. A block within a block has a record of its own, and the outer one gets none
-        of its entries.
-    """
+    """Record all answers of encodings in a `with` block."""
     record: list[SolverCall] = []
     token = _open_record.set(record)
     try:
@@ -53,10 +39,7 @@ def record_decisions() -> Iterator[list[SolverCall]]:
 
 @contextmanager
 def record_applied_rules(applied: set[str]) -> Iterator[None]:
-    """Add to a set which users' rules had an instance in any answer of a `with` block, as `RULES.lp:LINE:COLUMN`.
-
-    Unlike `record_decisions`, it also counts what is asked in blocks within the block.
-    """
+    """Add to a set which users' rules had an instance in any answer of a `with` block, as `RULES.lp:LINE:COLUMN`."""
     token = _applied_rules.set(applied)
     try:
         yield
@@ -74,15 +57,7 @@ def note_applied_rules(places: Iterable[str]) -> None:
 def note_answer(
     files: Sequence[Path], facts: Sequence[str], answer: Sequence[Any] | None, about: Sequence[Any] = ()
 ) -> None:
-    """Add an answer to the record that is open, if one is.
-
-    Parameters
-    ----------
-    files : paths of the encodings; the first one names the decision.
-    facts : the atoms that they were given, as text.
-    answer : the shown atoms, sorted by their text, or None.
-    about : what the candidates are, by their number.
-    """
+    """Add an answer to the record that is open, if one is."""
     record = _open_record.get()
     if record is not None:
         atoms = None if answer is None else tuple(map(str, answer))

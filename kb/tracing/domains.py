@@ -23,18 +23,7 @@ ARITHMETIC = (ASTType.BinaryOperation, ASTType.UnaryOperation)
 
 
 class Domains:
-    """The values of arguments, by class.
-
-    Parameters
-    ----------
-    program : the program taken apart.
-    units : the indices of its units that count.
-    atoms : the wanted atom, the input facts, and all other atoms that are known to hold.
-
-    Attributes
-    ----------
-    cut : whether numbers were left out.
-    """
+    """The values of arguments, by class."""
 
     def __init__(self, program: ParsedProgram, units: Sequence[int], atoms: Iterable[clingo.Symbol]) -> None:
         self.cut = False
@@ -105,10 +94,7 @@ class Domains:
         return True
 
     def _relations(self, number: int, unit: Unit) -> list[Relation]:
-        """Join the slots of a unit, and return what it compares.
-
-        Arithmetic in an atom is compared with a variable that has the name of the position, `=name/arguments/index`.
-        """
+        """Join the slots of a unit, and return what it compares."""
         found: list[Relation] = []
         heads = list(map(str, stated_by(unit)))
         for atom in atoms_in(unit):
@@ -185,10 +171,7 @@ class Domains:
                         self._add((number, name), clingo.Number(value))
 
     def _needed(self, number: int, index: int, one: Relation) -> Iterator[tuple[Slot, int]]:
-        """Yield (slot, number) of the numbers at which a relation turns, for each of its variables.
-
-        number : the number of the unit. index : that of the relation in it.
-        """
+        """Yield (slot, number) of the numbers at which a relation turns, for each of its variables."""
         for target in one.names:
             if target in one.fixed:
                 continue

@@ -48,10 +48,7 @@ def weight_rules(program: ParsedProgram) -> Iterator[str]:
 
 
 def relaxed_rules(program: ParsedProgram) -> Iterator[str]:
-    """Yield a program whose constraints may be broken, at a cost of one each; weak constraints are left out.
-
-    It is made of the statements of the program, as text, and of helping rules.
-    """
+    """Yield a program whose constraints may be broken, at a cost of one each; weak constraints are left out."""
     for number, unit in enumerate(program.units):
         statement = program.statements[unit.statement]
         if statement.kind == "constraint":
@@ -68,13 +65,7 @@ def relaxed_rules(program: ParsedProgram) -> Iterator[str]:
 
 
 def literal_info(literal: AST) -> dict[str, Any]:
-    """Return what an explanation needs to know of a body literal, whatever its instance; JSON values.
-
-    The keys are "kind" (atom, not, notnot, comparison, aggregate, conditional or truth), "text", "negated" (whether
-    `not` stands before it). Comparisons have "sides" and the "signs" between them; aggregates "function", "signs" (that
-    right of the left bound and that left of the right one, '' without a bound) and "conditions" (of each element, the
-    same of its literals); conditional literals "literal" and "conditions".
-    """
+    """Return what an explanation needs to know of a body literal, whatever its instance; JSON values."""
     text = str(literal)
     if literal.ast_type == ASTType.ConditionalLiteral:
         info = {"kind": "conditional", "text": text, "negated": False}
@@ -130,11 +121,7 @@ def _compared(term: AST) -> str:
 
 
 def _elements(literal: AST) -> Iterator[tuple[list[str], list[AST]]]:
-    """Yield (tuple of terms, condition) of each element of an aggregate or of a conditional literal.
-
-    The tuple of a conditional literal is the literal itself as a term. The literals of a set, `{ p(X) : q(X) }`, belong
-    to the condition.
-    """
+    """Yield (tuple of terms, condition) of each element of an aggregate or of a conditional literal."""
     if literal.ast_type == ASTType.ConditionalLiteral:
         yield [_term(literal.literal)], list(literal.condition)
     elif literal.ast_type == ASTType.Literal and literal.atom.ast_type == ASTType.BodyAggregate:

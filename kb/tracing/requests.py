@@ -15,26 +15,7 @@ from kb.tracing.syntax import JsonValues, ProgramPart, parsed
 
 
 def respond(request: JsonValues) -> JsonValues:
-    """Return the response to a request.
-
-    Parameters
-    ----------
-    request : "task" and what it needs. "parts" are the pieces of the program, each [file, line, text]; "facts" its
-        input facts, atoms as text; "answer" the shown atoms of its answer. The tasks:
-
-        - "statements": only the parts; what the program consists of, see `_statements`
-        - "trace": all instances of its rules that hold in the answer, see `_trace`
-        - "weigh": the costs of alternatives, with "heads" and "none" as of kb.tracing.alternatives.weigh
-        - "answer": the shown "atoms" of the best answer that holds "atom"; None when none does
-        - "candidates": the facts that might be given besides for "atom" to hold, where the atoms "known" hold now; the
-          attributes of kb.tracing.candidates.CandidateFacts by name
-        - "change": the least change with which "atom" holds, among "candidates" in the same form; the attributes of
-          kb.tracing.changes.FoundChange by name
-
-    Returns
-    -------
-    JSON values; {"failed": message} when the program or the answer is wrong.
-    """
+    """Return the response to a request."""
     parts = tuple(ProgramPart(file, line, text) for file, line, text in request["parts"])
     try:
         if request["task"] == "statements":
@@ -75,14 +56,7 @@ def _grounded(parts: tuple[ProgramPart, ...], facts: tuple[str, ...]) -> Grounde
 
 
 def _statements(parts: tuple[ProgramPart, ...]) -> JsonValues:
-    """Return what a program consists of.
-
-    "statements": file, line, column, text, kind and variables of each rule, constraint and weak constraint. "units": of
-    each statement with one alternative of its pools the index of the statement, the names of its variables, what is
-    known of the literals of its body and of the conditions of its head (kb.tracing.instrument.literal_info), and
-    whether it is a choice. "shown", "declared": the predicates of answers, and those that `#defined` names, as [name,
-    number of arguments].
-    """
+    """Return what a program consists of."""
     try:
         program = parsed(parts)
     except RuntimeError as error:
@@ -115,13 +89,7 @@ def _statements(parts: tuple[ProgramPart, ...]) -> JsonValues:
 
 
 def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> JsonValues:
-    """Return the atoms of an answer set and all instances of rules that hold in it.
-
-    "atoms": all atoms. "on": [unit, values, literals] of each instance; "heads": [unit, element, values, head,
-    condition] of each atom that an instance states or may choose; "elements": [unit, index of the literal, element,
-    values, tuple, condition] of each element of an aggregate or conditional literal. Literals are texts: of an atom, or
-    a list for the sides of a comparison and the bounds of an aggregate.
-    """
+    """Return the atoms of an answer set and all instances of rules that hold in it."""
     atoms = grounded.whole_answer(answer)
     found: dict[str, list[Any]] = {"trace__on": [], "trace__head": [], "trace__element": []}
     for symbol in sorted(instances(grounded.parts, atoms)):

@@ -18,21 +18,7 @@ FactChange = tuple[int, ...]
 
 
 class SwitchedProgram:
-    """A program grounded once with switches for its facts, and an atom that is wanted.
-
-    Parameters
-    ----------
-    program : the program taken apart.
-    facts : its input facts.
-    candidates : what may be given besides, and which given facts matter.
-    wanted : the atom that shall hold.
-
-    Attributes
-    ----------
-    removable : the given facts that can be taken away.
-    addable : the candidates.
-    checks : the number of times that costs were asked for; it grows.
-    """
+    """A program grounded once with switches for its facts, and an atom that is wanted."""
 
     def __init__(
         self, program: ParsedProgram, facts: Sequence[str], candidates: CandidateFacts, wanted: clingo.Symbol
@@ -50,17 +36,11 @@ class SwitchedProgram:
         self._wanted = None if atom is None else atom.literal
 
     def least_of_one_answer(self) -> FactChange | None:
-        """Return a change of least size after which the only answer holds the wanted atom; None when none does.
-
-        For programs without choices.
-        """
+        """Return a change of least size after which the only answer holds the wanted atom; None when none does."""
         return None if self._wanted is None else self._solved([self._wanted], "opt")
 
     def least_possible(self) -> FactChange | None:
-        """Return a change of least size after which some answer holds the wanted atom, at whatever cost; or None.
-
-        For programs with choices.
-        """
+        """Return a change of least size after which some answer holds the wanted atom, at whatever cost; or None."""
         if self._wanted is None:
             return None
         for size in range(MAX_CHANGE_SIZE + 1):
@@ -72,11 +52,8 @@ class SwitchedProgram:
         return None
 
     def excess(self, change: FactChange) -> tuple[int, ...] | None:
-        """Return by how much the best answer with the wanted atom is dearer than the best one, after a change.
-
-        One number for each level of priority, the highest first; only zeros when the wanted atom is part of a best
-        answer. None when no answer holds it.
-        """
+        """Return by how much the best answer with the wanted atom is dearer than the best one, after a change."""
+        # None when no answer holds it.
         self.checks += 1
         on = set(change)
         assumptions = [literal if index in on else -literal for index, literal in enumerate(self._switches)]
@@ -110,11 +87,7 @@ class SwitchedProgram:
 def _switched(
     program: ParsedProgram, fixed: Sequence[str], removable: Sequence[str], addable: Sequence[str], by_choice: bool
 ) -> clingo.Control:
-    """Return the program grounded with switches for facts.
-
-    Without a choice the number of switches that are on is minimised; with one, the costs of the program are, and
-    `trace__size(N)` says that at most N switches are on.
-    """
+    """Return the program grounded with switches for facts."""
     lines = [str(one.node) for one in program.statements if one.kind != "weak" or by_choice]
     lines += [*program.constants, *(f"#defined {name}/{arity}." for name, arity in program.defined)]
     lines += [f"{fact}." for fact in fixed]

@@ -39,73 +39,41 @@ FUNCTIONS = ("#count", "#sum", "#sum+", "#min", "#max")  # in the order of cling
 
 
 class ProgramPart(NamedTuple):
-    """A piece of a logic program.
+    """A piece of a logic program."""
 
-    Attributes
-    ----------
-    file : the name of the file that it comes from.
-    line : the line of that file with which it begins, from 1.
-    text : the piece itself, statements of the ASP language.
-    """
-
-    file: str
-    line: int
-    text: str
+    file: str  # the name of the file that it comes from
+    line: int  # the line of that file with which it begins, from 1
+    text: str  # the piece itself, statements of the ASP language
 
 
 class TracedStatement(NamedTuple):
-    """A rule, a constraint or a weak constraint of a program.
+    """A rule, a constraint or a weak constraint of a program."""
 
-    Attributes
-    ----------
-    file, line, column : where it begins; line and column from 1.
-    text : the statement as written, on one line.
-    kind : fact, rule, choice, disjunction, constraint or weak (a weak constraint).
-    variables : the names of its global variables, in the order of the text.
-    node : its syntax tree.
-    """
-
-    file: str
+    file: str  # where it begins; line and column from 1
     line: int
     column: int
-    text: str
-    kind: str
-    variables: tuple[str, ...]
-    node: AST
+    text: str  # the statement as written, on one line
+    kind: str  # fact, rule, choice, disjunction, constraint or weak (a weak constraint)
+    variables: tuple[str, ...]  # the names of its global variables, in the order of the text
+    node: AST  # its syntax tree
 
 
 class Unit(NamedTuple):
-    """A statement with one alternative of each of its pools.
+    """A statement with one alternative of each of its pools."""
 
-    Attributes
-    ----------
-    statement : the index of its statement.
-    node : its syntax tree, in which hidden variables have names.
-    names : the names of its global variables, hidden ones included.
-    """
-
-    statement: int
-    node: AST
-    names: tuple[str, ...]
+    statement: int  # the index of its statement
+    node: AST  # its syntax tree, in which hidden variables have names
+    names: tuple[str, ...]  # the names of its global variables, hidden ones included
 
 
 class ParsedProgram(NamedTuple):
-    """A program taken apart.
+    """A program taken apart."""
 
-    Attributes
-    ----------
-    statements : the rules, constraints and weak constraints, in order.
-    units : the same with one alternative of each pool.
-    constants : the `#const` definitions as text.
-    defined : the predicates that `#defined` declares, (name, number of arguments).
-    shown : the predicates of the answer, likewise; empty when everything is shown.
-    """
-
-    statements: tuple[TracedStatement, ...]
-    units: tuple[Unit, ...]
-    constants: tuple[str, ...]
-    defined: frozenset[tuple[str, int]]
-    shown: frozenset[tuple[str, int]]
+    statements: tuple[TracedStatement, ...]  # the rules, constraints and weak constraints, in order
+    units: tuple[Unit, ...]  # the same with one alternative of each pool
+    constants: tuple[str, ...]  # the `#const` definitions as text
+    defined: frozenset[tuple[str, int]]  # the predicates that `#defined` declares, (name, number of arguments)
+    shown: frozenset[tuple[str, int]]  # the predicates of the answer, likewise; empty when everything is shown
 
 
 @lru_cache(maxsize=64)
@@ -133,10 +101,7 @@ def parsed(parts: tuple[ProgramPart, ...]) -> ParsedProgram:
 
 
 def global_variables_of(node: AST) -> tuple[str, ...]:
-    """Return the names of the global variables of a statement, in the order of its text; `_` is none of them.
-
-    Variables that stand only in the elements of aggregates or choices or in conditional literals are local.
-    """
+    """Return the names of the global variables of a statement, in the order of its text; `_` is none of them."""
     found: dict[str, None] = {}
     if node.ast_type == ASTType.Minimize:
         outer: list[AST] = [*node.body, node.weight, node.priority, *node.terms]
@@ -257,10 +222,7 @@ class _AnyNamer(Transformer):
 
 
 class _HiddenNamer(Transformer):
-    """Gives names to anonymous variables and to intervals of body literals; clingo calls the `visit` methods.
-
-    An interval becomes a variable with a comparison beside its literal. Negated atoms keep their anonymous variables.
-    """
+    """Gives names to anonymous variables and to intervals of body literals; clingo calls the `visit` methods."""
 
     def __init__(self) -> None:
         self._count = 0

@@ -24,32 +24,21 @@ MIN_FLOOR_SQUARES = 6  # squares: smaller parts of the floor have no corner; tun
 
 
 class Corner(NamedTuple):
-    """A convex corner of the known floor.
+    """A convex corner of the known floor."""
 
-    Attributes
-    ----------
-    point : (x, y)
-        The corner, in squares, in the frame of the view's arrays: origin at the south-west corner of the map view's
-        square [0, 0], x to the east, y to the north, along the grid.
-    square : (column, row)
-        The square of floor that has it: (column, row) on the view's arrays, row 0 in the south.
-    walls : two (x, y) or None
-        The unit normals of the walls that form it, pointing out of the floor, same frame, if at least one of these lies
-        askew to the grid; None otherwise.
-    """
-
+    # The corner, in squares, in the frame of the view's arrays: origin at the south-west corner of the map view's
+    # square [0, 0], x to the east, y to the north, along the grid
     point: XY
-    square: Square
+    square: Square  # The square of floor that has it: (column, row) on the view's arrays, row 0 in the south
+    # The unit normals of the walls that form it, pointing out of the floor, same frame, if at least one of these lies
+    # askew to the grid; None otherwise
     walls: tuple[XY, XY] | None = None
 
 
 def known_floor(model: WorldModel) -> Bools:
-    """Return all squares known to be floor: (rows, columns) bool, on the arrays of the map view (row 0 in the south).
-
-    These are the floor on which the robot stands, all other free regions of at least MIN_FLOOR_SQUARES squares, and the
-    floor under objects that were moved: squares that were floor before the object came there, or that it surely covers
-    by its outline. Other squares that a moved object may cover may be wall, even where they were seen to be occupied.
-    """
+    """Return all squares known to be floor."""
+    # (rows, columns) bool, on the arrays of the map view (row 0 in the south).
+    # Other squares that a moved object may cover may be wall, even where they were seen to be occupied.
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= MIN_FLOOR_SQUARES)[model.labels]
     mask: Bools = model.floor | (model.space & large)
@@ -65,29 +54,7 @@ def known_floor(model: WorldModel) -> Bools:
 
 
 def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Corner]:
-    """Find the corner of the known floor furthest towards each side of the robot frame.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model.
-    rules : tuple of Path
-        The user's own encodings, solved together with kb/asp/corners.lp.
-
-    Returns
-    -------
-    mapping of str to Corner
-        By side of the robot frame: northeast, northwest, southeast, southwest. The corner furthest northeast is the one
-        with the greatest east + north, and so on. A corner holds its point (x, y) in squares and its square of floor
-        (column, row), both on the arrays of the map view (row 0 in the south), and the outward unit normals of its two
-        walls where one of these lies askew to the grid, else None. One corner may stand for several sides. Empty when
-        no floor is known or the encodings have no answer.
-
-    Raises
-    ------
-    BadInputError
-        The user's encodings are wrong.
-    """
+    """Find the corner of the known floor furthest towards each side of the robot frame."""
     found = _convex_corners(known_floor(model))
     facts = []
     for number, corner in enumerate(found):
@@ -98,12 +65,7 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
 
 
 def _convex_corners(floor: Bools) -> list[Corner]:
-    """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it.
-
-    Each holds its point, that square as (column, row), and the outward unit normals of its walls where one of these
-    lies askew to the grid, else None. `floor` is (rows, columns) bool with at least one square. Points are in the frame
-    of the mask: squares, origin at the south-west corner of its square [0, 0].
-    """
+    """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it."""
     rows = np.flatnonzero(floor.any(axis=1))
     first = floor[rows].argmax(axis=1)
     last = floor.shape[1] - 1 - floor[rows, ::-1].argmax(axis=1)
@@ -118,13 +80,8 @@ def _convex_corners(floor: Bools) -> list[Corner]:
 
 
 def _wall_normals(ring: shapely.LinearRing, point: XY) -> tuple[XY, XY] | None:
-    """Return the outward unit normals of the two walls at a corner of a convex ring, in the ring's frame.
-
-    `point` is one of the ring's corners, in squares. None where both walls lie along the grid, or where they are nearly
-    one wall. A wall is followed as far as WALL_SAMPLE_LENGTH; one that leaves its row of squares within that lies
-    askew. The first normal is that of the wall before the corner in the order of the ring, the second that of the wall
-    after it.
-    """
+    """Return the outward unit normals of the two walls at a corner of a convex ring, in the ring's frame."""
+    # None where both walls lie along the grid, or where they are nearly one wall.
     along, length = ring.project(shapely.Point(point)), ring.length
     ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 8)) % length) for way in (-1, 1)]
     steps = np.array([(end.x - point[0], end.y - point[1]) for end in ends])

@@ -35,46 +35,28 @@ UNCLEAR_EDGE = 2.0  # squares: on either side of a neck so much of its width may
 
 
 class DoorwayNeck(NamedTuple):
-    """A neck of the floor.
+    """A neck of the floor."""
 
-    Attributes
-    ----------
-    passage : Passage
-        The neck as geometry found it, in squares, view frame (origin at the south-west corner of the map view's square
-        [0, 0]): its width, mouths, and the clearance on both sides.
-    line : Segment
-        The line across it, two points (x, y) on the walls, where it was seen best; in squares, view frame. The first is
-        the end on the left of a robot that goes from the neck's first side to its second.
-    certainty : int
-        Percent of belief that it is open along that line and that verge bounds it on both ends.
-    """
-
+    # The neck as geometry found it, in squares, view frame (origin at the south-west corner of the map view's square
+    # [0, 0]): its width, mouths, and the clearance on both sides
     passage: Passage
+    # The line across it, two points (x, y) on the walls, where it was seen best; in squares, view frame. The first is
+    # the end on the left of a robot that goes from the neck's first side to its second.
     line: Segment
-    certainty: int
+    certainty: int  # Percent of belief that it is open along that line and that verge bounds it on both ends
 
 
 class DoorwayNecks(NamedTuple):
-    """The necks of a floor.
+    """The necks of a floor."""
 
-    Attributes
-    ----------
-    necks : list of DoorwayNeck
-        The necks in the view frame, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides.
-    screen : Screen
-        The floor on which they were found: the view with NECK_UNSEEN_MARGIN free squares about it, so that its origin
-        lies that many squares further west and south than that of the view frame.
-    """
-
+    # The necks in the view frame, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides
     necks: list[DoorwayNeck]
+    # The floor on which they were found: the view with NECK_UNSEEN_MARGIN free squares about it, so that its origin
+    # lies that many squares further west and south than that of the view frame
     screen: Screen
 
     def narrow(self, neck: DoorwayNeck) -> Bools:
-        """Return the squares where the narrowest line of a neck may be, wherever in their squares its walls end.
-
-        These are squares about the neck where the floor is wider than the neck by at most WIDTH_UNCERTAINTY. The mask
-        is (rows, columns) bool on the view's arrays, row 0 in the south. `neck` is one of `necks`, view frame.
-        """
+        """Return the squares where the narrowest line of a neck may be, wherever in their squares its walls end."""
         mask = np.zeros(self.screen.shape, np.bool_)
         for column, row in self.screen.narrows(
             neck.passage.shifted(NECK_UNSEEN_MARGIN, NECK_UNSEEN_MARGIN), WIDTH_UNCERTAINTY
@@ -84,29 +66,7 @@ class DoorwayNecks(NamedTuple):
 
 
 def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks:
-    """Find all necks of the floor, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides.
-
-    A neck is a locally narrowest passage. Besides those, necks are found with floor MIN_OPENING_RATIO times as wide on
-    both sides. Necks with an end beyond the view are left out.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model.
-    verge : (rows, columns) bool
-        Squares that bound the floor, on the arrays of the map view (row 0 in the south).
-    doubtful : (rows, columns) bool
-        Squares that may bound it, but more likely do not. They count as free.
-
-    Returns
-    -------
-    DoorwayNecks
-        The necks, and the floor on which they were found, as a screen with a margin about it. A neck holds the passage
-        (width, mouths and clearances on both sides, in squares), the line (two points) across it where it was seen
-        best, and its certainty in percent; view frame (origin at the south-west corner of the map view's square [0,
-        0]). Among those with an equally wide floor the order is that in which geometry finds them. Of several lines
-        with equal certainty that along the middle of the neck is preferred to its mouths.
-    """
+    """Find all necks of the floor, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides."""
     walls, seen_verge = _wall_parts(model), verge & model.view.seen
     screen = Screen(np.pad(~verge, NECK_UNSEEN_MARGIN, constant_values=True))
     found = []
@@ -123,12 +83,7 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
 
 
 def _passages(screen: Screen) -> list[Passage]:
-    """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it.
-
-    Those come first that have floor ENCODED_DOOR_RATIO times as wide on both sides; then those with MIN_OPENING_RATIO
-    that share no mouth with one of the first. A neck (Passage) holds its width, mouths (lines across it, two points (x,
-    y) each), and the clearance on both sides, in squares.
-    """
+    """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it."""
     doors = screen.passages(ENCODED_DOOR_RATIO)
     mouths = {frozenset(mouth) for passage in doors for mouth in passage.mouths}
     others = [p for p in screen.passages(MIN_OPENING_RATIO) if not any(frozenset(m) in mouths for m in p.mouths)]
@@ -147,12 +102,8 @@ def _passages(screen: Screen) -> list[Passage]:
 
 
 def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:
-    """Return the squares along a line across a passage, at two samples a square: on one side of it, and on the other.
-
-    Two entries, or one: of a mouth of a doorway that has some depth, only the side within the doorway is returned. Each
-    entry is (rows, columns), two int arrays of one length, indices clipped to an array of `shape` (rows, columns).
-    `line` is in the view frame.
-    """
+    """Return the squares along a line across a passage, at two samples a square."""
+    # On one side of it, and on the other.
     (ax, ay), (bx, by) = line
     one, two = passage.mouths
     sides = (1,) if line == one != two else (-1,) if line == two != one else (-1, 1)
@@ -162,39 +113,23 @@ def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> l
 
 
 def _sample_positions(line: Segment) -> Floats:
-    """Return the positions on a line at which squares are looked up, as fractions of its length.
-
-    (n,) float64 between 0 (its first end) and 1, ascending, two for each square of length, and two at least, each in
-    the middle of its part of the line. `line` is two points (x, y), in squares.
-    """
+    """Return the positions on a line at which squares are looked up, as fractions of its length."""
     count = max(2, round(2 * math.dist(*line)))
     parts: Floats = (np.arange(count) + 0.5) / count
     return parts
 
 
 class _WallParts(NamedTuple):
-    """Connected parts of what is probably occupied.
+    """Connected parts of what is probably occupied."""
 
-    Attributes
-    ----------
-    labels : (rows, columns) int32
-        The number of each square's part, 0 for none, on the view's arrays.
-    extents : (greatest number + 1,) int64
-        Index n: the longer side of the containing rectangle of part n, in squares. A part that was felt to be verge
-        counts as at least as long as the shortest wall.
-    """
-
-    labels: Labels
+    labels: Labels  # The number of each square's part, 0 for none, on the view's arrays
+    # Index n: the longer side of the containing rectangle of part n, in squares. A part that was felt to be verge
+    # counts as at least as long as the shortest wall.
     extents: Longs
 
 
 def _wall_parts(model: WorldModel) -> _WallParts:
-    """Return the edge-connected parts of what is probably occupied, on the view's arrays.
-
-    Those are the squares that are occupied with a probability of at least JAMB_PROBABILITY. The result holds the number
-    of each square's part, (rows, columns) with 0 for none, and the longer side of each part's containing rectangle, in
-    squares; a part on which verge was felt counts as at least SHORTEST_WALL squares long.
-    """
+    """Return the edge-connected parts of what is probably occupied, on the view's arrays."""
     found = components(model.view.seen & (model.view.probability >= JAMB_PROBABILITY))
     longer = extents(found.labels, found.number)
     height, width = found.labels.shape
@@ -216,18 +151,10 @@ def _certainty(
     doubtful: Bools,
     walls: _WallParts,
 ) -> int:
-    """Return the percent of belief that a neck is open along a line and that verge bounds it on both ends.
-
-    The exact width need not be clear: squares beside the walls tell the width, but not whether it is a door. 0 when a
-    square along the line is unseen or occupied, or an end touches no verge; up to 50 when what stands at an end is
-    shorter than the shortest wall; from 50 to 100 by how much of the line and of its ends is determined.
-
-    passage, line : the neck, and the line across it, view frame.
-    across : (rows, columns) of the squares along the line, on the view's arrays.
-    model : the world model.
-    verge, doubtful : (rows, columns) bool, squares that bound the floor, and those that may but more likely do not.
-    walls : the connected parts of what is probably occupied, with their lengths.
-    """
+    """Return the percent of belief that a neck is open along a line and that verge bounds it on both ends."""
+    # The exact width need not be clear: squares beside the walls tell the width, but not whether it is a door. 0 when a
+    # square along the line is unseen or occupied, or an end touches no verge; up to 50 when what stands at an end is
+    # shorter than the shortest wall; from 50 to 100 by how much of the line and of its ends is determined.
     parts = _sample_positions(line)
     inner = np.minimum(parts, 1 - parts) * passage.width >= min(UNCLEAR_EDGE, passage.width / 4) - 1e-9
     if not (model.view.seen[across] & ~verge[across] & ~(doubtful[across] & inner)).all():
@@ -251,15 +178,7 @@ def _certainty(
 
 
 def _share_determined(jamb: Indices, outward: Floats, furthest: float, surely_wall: Bools) -> float:
-    """Return the share of a jamb's squares that are surely wall, 0 to 1.
-
-    A jamb is the squares of wall that one end of a neck touches. The share is looked up there, and up to `furthest`
-    squares further outward; the best of all these depths counts.
-
-    jamb : (rows, columns) of its squares on the view's arrays.
-    outward : vector (x, y) from the middle of the neck to the jamb, in squares.
-    surely_wall : (rows, columns) bool, on the view's arrays.
-    """
+    """Return the share of a jamb's squares that are surely wall, 0 to 1."""
     ahead = outward / max(float(np.hypot(*outward)), 1e-9)
     shares = []
     for deeper in range(max(math.floor(furthest), 0) + 1):
@@ -273,20 +192,7 @@ def _share_determined(jamb: Indices, outward: Floats, furthest: float, surely_wa
 
 
 def jamb(wall: Bools, end: XY) -> Indices:
-    """Return the squares of a wall that one end of a neck touches.
-
-    Parameters
-    ----------
-    wall : (rows, columns) bool
-        The squares of walls, row 0 in the south.
-    end : (x, y)
-        The end of the neck, in squares, in the frame of the mask: origin at the south-west corner of its square [0, 0].
-
-    Returns
-    -------
-    rows, columns : (n,) int64
-        The indices of at most four squares, by row, then by column; empty arrays where the point touches no wall.
-    """
+    """Return the squares of a wall that one end of a neck touches."""
     columns, rows = (sorted({math.floor(v - 0.5), math.floor(v + 0.5)}) for v in end)
     touched = [
         (row, column)
@@ -299,9 +205,6 @@ def jamb(wall: Bools, end: XY) -> Indices:
 
 
 def _indices(x: Floats, y: Floats, shape: tuple[int, ...]) -> Indices:
-    """Return the squares in which points lie: rows and columns, clipped to an array of shape (rows, columns).
-
-    x, y : arrays of one length, in squares, origin at the south-west corner of the array's square [0, 0].
-    """
+    """Return the squares in which points lie: rows and columns, clipped to an array of shape (rows, columns)."""
     rows = np.clip(np.floor(y).astype(int), 0, shape[0] - 1)
     return rows, np.clip(np.floor(x).astype(int), 0, shape[1] - 1)

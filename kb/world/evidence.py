@@ -20,29 +20,7 @@ STATUS_LETTERS = {CellStatus.PREDICTED: "p", CellStatus.EXPLAINED: "e", CellStat
 def evidence(
     model: WorldModel, rooms: Rooms, accommodated: Accommodation, kind_facts: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Return what a world model rests on, as further keys of the `belief` of an episode's line.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model after an impression.
-    rooms : Rooms
-        Its rooms and doors.
-    accommodated : Accommodation
-        How the impression was explained.
-    kind_facts : mapping of str to str
-        Name of a node -> the fact, with a full stop, that says what it is.
-
-    Returns
-    -------
-    dict
-        status: a letter for each of the 160 fields, p, e or n (predicted, explained, noise). least, most: digits, the
-        least and greatest gray level that was possible for each field. explained: for each fact that explains fields
-        (`kind(o1,object,95).`), the numbers of these fields, ascending. origin: [east, north], the point of its square
-        in which the robot woke, in squares from the south-west corner of the square, map frame. regions: node -> its
-        region of the map, as in the facts of interpretation.lp. moved: the nodes whose place is known from having been
-        moved. necks: door -> the two ends [east, north] of the line across it, in squares, robot frame.
-    """
+    """Return what a world model rests on, as further keys of the `belief` of an episode's line."""
     fields = accommodated.fields
     return {
         "status": "".join(STATUS_LETTERS[status] for status in fields.status),
@@ -60,10 +38,7 @@ def evidence(
 
 
 def _explaining_facts(model: WorldModel, fields: FieldAccount, kind_facts: Mapping[str, str]) -> dict[str, list[int]]:
-    """Return for each fact that explains fields the numbers of these fields; each explained field is named once.
-
-    kind_facts : the facts that say what nodes are, by the names of the nodes.
-    """
+    """Return for each fact that explains fields the numbers of these fields; each explained field is named once."""
     found: dict[str, list[int]] = {}
     names = {label_of(node.region): node.name for node in model.objects}
     for field, label in _main_regions(model, fields):
@@ -74,10 +49,7 @@ def _explaining_facts(model: WorldModel, fields: FieldAccount, kind_facts: Mappi
 
 
 def _main_regions(model: WorldModel, fields: FieldAccount) -> Iterator[tuple[int, int]]:
-    """Yield each explained field with the label of the region to which most of what it shows belongs.
-
-    For a field that shows something occupied this is an occupied region if one is under it, else a free one if one is.
-    """
+    """Yield each explained field with the label of the region to which most of what it shows belongs."""
     rows, columns = _squares_under(model, fields)
     labels, free = model.labels, free_squares(model.view)
     for field, status in enumerate(fields.status):

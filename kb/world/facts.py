@@ -33,18 +33,11 @@ MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movab
 
 
 class Places(NamedTuple):
-    """Parts of the world besides the tree of nodes.
+    """Parts of the world besides the tree of nodes."""
 
-    Attributes
-    ----------
-    rooms : Rooms
-        The rooms of the floor and the doors between them.
-    corners : mapping of str to Corner
-        The corner of the known floor furthest towards each side of the robot frame: northeast, northwest, southeast,
-        southwest. Sides without a corner are missing.
-    """
-
-    rooms: Rooms
+    rooms: Rooms  # The rooms of the floor and the doors between them
+    # The corner of the known floor furthest towards each side of the robot frame: northeast, northwest, southeast,
+    # southwest. Sides without a corner are missing.
     corners: Mapping[str, Corner]
 
 
@@ -56,34 +49,7 @@ def belief(
     parameters: Iterable[str] = (),
     planned: Iterable[str] = (),
 ) -> dict[str, Any]:
-    """Return the `belief` of an episode's line, ready for JSON.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model after an impression.
-    places : Places
-        The rooms and corners of that model.
-    accommodated : Accommodation
-        How the impression was explained: the chosen explanation, with its kind as a word, and the status of each of the
-        160 fields.
-    bound : mapping of str to str
-        Name of a parameter of the task -> name of the node of the model that it means.
-    parameters : iterable of str
-        The names of all parameters of the task that stand for objects.
-    planned : iterable of str
-        The facts of the task plan, without full stops; none while there is no plan.
-
-    Returns
-    -------
-    dict
-        place: where the robot believes it is, [east, north] in squares, robot frame. lattice: the angle by which the
-        robot frame is turned against the grid of squares, in degrees, counter-clockwise positive, -44 to 45. pose: the
-        kind of the explanation, such as predicted, blocked or lost. cells: how many of the 160 fields were predicted,
-        explained or noise; kinds without any are left out. bound: the bindings, as given. facts: the facts of the world
-        model, of the bindings and of the plan as text, sorted, with full stops. Further keys say what all this rests on
-        (`kb.world.evidence`).
-    """
+    """Return the `belief` of an episode's line, ready for JSON."""
     cells = Counter(str(status) for status in accommodated.fields.status)
     east, north = model.frame.place_to_utak(*model.place)
     facts = sorted(f"{fact}." for fact in (*model_facts(model, places), *binding_facts(bound, parameters), *planned))
@@ -108,45 +74,13 @@ def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
 
 
 def binding_facts(bound: Mapping[str, str], parameters: Iterable[str]) -> Iterator[str]:
-    """Yield `parameter(X)` for each parameter of the task, then `bound(X,N)` for each that is bound; no full stops.
-
-    Parameters
-    ----------
-    bound : mapping of str to str
-        Name of a parameter -> name of the node that it means.
-    parameters : iterable of str
-        The names of the parameters that stand for objects; those that are bound need not be among them.
-
-    Yields
-    ------
-    str
-        One fact, such as `bound(x,o2)`; each kind is sorted by the name of the parameter.
-    """
+    """Yield `parameter(X)` for each parameter of the task, then `bound(X,N)` for each that is bound; no full stops."""
     yield from (f"parameter({name})" for name in sorted({*parameters, *bound}))
     yield from (f"bound({name},{node})" for name, node in sorted(bound.items()))
 
 
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
-    """Yield the world model, its rooms, doors and corners as facts without their full stops.
-
-    The predicates are node/1, kind/3, child/2, offset/3, held/1, rect/5, segment/7, shape/3, colour/3, movable/2, in/2,
-    adjacent/2, room/1, unseen/2, door/1, width/2, threshold/5, connects/3, corner/3, junction/4, link/5 and crosses/2.
-    Coordinates are hundredths of squares in the robot frame, those of offset/3 relative to the parent node; confidences
-    are percent.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model.
-    places : Places
-        Its rooms with their doors, and the corner of the known floor furthest towards each side.
-
-    Yields
-    ------
-    str
-        One fact, such as `kind(o1,object,95)`: first those of the robot, the floor and the verge, then all outlines,
-        the objects by number, rooms, doors, corners and the pathgraph.
-    """
+    """Yield the world model, its rooms, doors and corners as facts without their full stops."""
     yield from _root_facts(model)
     parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
     whole = ((name, _mask_rings(mask, model)) for name, mask in parts if mask.any())
@@ -161,22 +95,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
 
 
 def facts_for_rules(encoding: str, rules: Sequence[Path], model: WorldModel, places: Places) -> tuple[str, ...]:
-    """Return the facts of the world model that users' rules name in an encoding which works without them.
-
-    Parameters
-    ----------
-    encoding : the name of the encoding, without `.lp`.
-    rules : the paths of the users' rules.
-    model, places : as for `model_facts`.
-
-    Returns
-    -------
-    Facts without full stops, in the order of `model_facts`; `object(N)` for objects, and for `org` also `utak`.
-
-    Raises
-    ------
-    CannotOpenError, BadInputError : the files are not valid.
-    """
+    """Return the facts of the world model that users' rules name in an encoding which works without them."""
     named = world_facts_named(encoding, rules)
     if not named:
         return ()
@@ -187,12 +106,7 @@ def facts_for_rules(encoding: str, rules: Sequence[Path], model: WorldModel, pla
 
 
 def _root_facts(model: WorldModel) -> Iterator[str]:
-    """Yield the facts of the robot, the floor and the verge, without full stops.
-
-    These are node/1, kind/3, child/2 and offset/3, and held/1 for the object in hand. Offsets are hundredths of
-    squares, east and north in the robot frame: the robot's from where it woke, those of floor and verge from their
-    parent node. Confidences are percent.
-    """
+    """Yield the facts of the robot, the floor and the verge, without full stops."""
     east, north = model.frame.place_to_utak(*model.place)
     yield f"node({ROOT_NODE})"
     yield f"kind({ROOT_NODE},utak,100)"
@@ -208,30 +122,19 @@ def _root_facts(model: WorldModel) -> Iterator[str]:
 
 
 def _share_settled(model: WorldModel, kind: str) -> int:
-    """Return the mean confidence in the squares of the floor or the verge, in percent; 0 when there are none.
-
-    It is rounded down; a square that the counts leave open counts as 0. `kind` is floor; any other word stands for
-    verge.
-    """
+    """Return the mean confidence in the squares of the floor or the verge, in percent; 0 when there are none."""
     mask = model.floor if kind == "floor" else model.verge
     return int(_square_confidence(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
 
 
 def _square_confidence(model: WorldModel) -> Longs:
-    """Return the confidence in what the counts settle of each square, in percent: (rows, columns) int64.
-
-    100 beyond doubt, SETTLED_CONFIDENCE when settled otherwise, 0 when not settled; on the view's arrays.
-    """
+    """Return the confidence in what the counts settle of each square, in percent: (rows, columns) int64."""
+    # 100 beyond doubt, SETTLED_CONFIDENCE when settled otherwise, 0 when not settled; on the view's arrays.
     return np.where(model.certain, 100, SETTLED_CONFIDENCE * (model.view.state != OPEN))
 
 
 def appearance_facts(node: Node) -> Iterator[str]:
-    """Yield shape/3 for each class that an object may have, and colour/3 where it was felt; without full stops.
-
-    Parameters
-    ----------
-    node : the object.
-    """
+    """Yield shape/3 for each class that an object may have, and colour/3 where it was felt; without full stops."""
     yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
     yield from colour_facts(node.name, node.colour)
 
@@ -242,12 +145,7 @@ def colour_facts(name: str, colour: str | None) -> tuple[str, ...]:
 
 
 def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    """Yield the facts of one object, its outline apart, without full stops.
-
-    These are node/1, child/2, kind/3, offset/3, shape/3, colour/3, movable/2, and in/2 and adjacent/2 where they hold.
-    The offset is that of the middle of its squares from where the robot woke, in hundredths of squares, robot frame;
-    confidences are percent. `rooms` tells in which room the object's middle lies.
-    """
+    """Yield the facts of one object, its outline apart, without full stops."""
     name = node.name
     yield f"node({name})"
     yield f"child({FLOOR_NODE},{name})"
@@ -267,20 +165,13 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _adjacent_to_robot(node: Node, model: WorldModel) -> bool:
-    """Return whether an object may cover the robot's square or one of the 8 squares about it.
-
-    The squares are those of the node's patch and of the robot's place in `model`, both in the map frame.
-    """
+    """Return whether an object may cover the robot's square or one of the 8 squares about it."""
     row, column = math.floor(model.place[1]) - node.patch.south, math.floor(model.place[0]) - node.patch.west
     return bool(node.patch.mask[max(row - 1, 0) : max(row + 2, 0), max(column - 1, 0) : max(column + 2, 0)].any())
 
 
 def _object_rings(node: Node) -> list[Floats]:
-    """Return the boundary of an object as rings of (n, 2) points (x, y), in squares, map frame.
-
-    It is its believed outline, one ring; or that of the squares that it may cover, while no outline is known. The first
-    point of a ring is not repeated at its end.
-    """
+    """Return the boundary of an object as rings of (n, 2) points (x, y), in squares, map frame."""
     if node.polygon is not None:
         return [np.array(node.polygon.exterior.coords)[:-1]]
     corner = np.array([node.patch.west, node.patch.south])
@@ -289,36 +180,20 @@ def _object_rings(node: Node) -> list[Floats]:
 
 @lru_cache(maxsize=4096)
 def _patch_outline(squares: bytes, shape: tuple[int, int]) -> list[Ring]:
-    """Return the outline of a small mask as rings of corners (x, y), the first corner not repeated.
-
-    `squares` are the bytes of the mask, row by row from the south, one byte a square; `shape` is (rows, columns).
-    Corners are in squares, origin at the south-west corner of the mask. Cached: most objects look the same from one
-    impression to the next.
-    """
+    """Return the outline of a small mask as rings of corners (x, y), the first corner not repeated."""
     return outline(np.frombuffer(squares, np.bool_).reshape(shape))
 
 
 def _mask_rings(mask: Bools, model: WorldModel) -> list[Floats]:
-    """Return the outline of a mask on the view's arrays as rings of (n, 2) points (x, y), in squares, map frame.
-
-    Outer rings run counter-clockwise, holes clockwise; the first point is not repeated.
-    """
+    """Return the outline of a mask on the view's arrays as rings of (n, 2) points (x, y), in squares, map frame."""
     corner = np.array([model.view.west, model.view.south])
     return [corner + ring for ring in outline(mask)]
 
 
 def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> Iterator[str]:
-    """Yield the containing rectangles and the boundaries of nodes, ring after ring, without full stops.
-
-    `rect(Node,West,South,East,North)`, then `segment(Node,Number,East,North,East,North,Confidence)` from a point to the
-    next one, numbered from 0 for each node. Coordinates are hundredths of squares, robot frame; confidences percent.
-
-    Nodes come in the order of `shapes`: of each its rectangle, then its segments, one for each point of its rings in
-    order. A confidence is the mean of the percent by which the squares on both sides of the segment are settled.
-
-    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame, the first not repeated. There is
-        at least one ring in all.
-    """
+    """Yield the containing rectangles and the boundaries of nodes, ring after ring, without full stops."""
+    # Nodes come in the order of `shapes`: of each its rectangle, then its segments, one for each point of its rings in
+    # order.
     names, rings = zip(*((name, ring) for name, parts in shapes for ring in parts), strict=True)
     starts = np.concatenate(rings)
     ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
@@ -339,23 +214,14 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
 
 
 def _points_inhundredths(points: Floats, model: WorldModel) -> Longs:
-    """Return (n, 2) points (x, y) of the map frame, in squares, as (n, 2) int64 (east, north) of the robot frame.
-
-    The results are hundredths of squares from where the robot woke, rounded; `model` has the frame.
-    """
+    """Return (n, 2) points (x, y) of the map frame, in squares, as (n, 2) int64 (east, north) of the robot frame."""
     placed: Floats = np.column_stack(model.frame.place_to_utak(*points.T))
     answer: Longs = np.rint(FACT_UNITS_PER_SQUARE * placed).astype(np.int64)
     return answer
 
 
 def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
-    """Return for each segment the mean confidence in the squares on both sides of it, in percent, rounded down.
-
-    Each segment is sampled at SEGMENT_SAMPLES places, half a square to its left and to its right; squares beyond the
-    view count as 0.
-
-    starts, ends : (n, 2) points (x, y), in squares, map frame.
-    """
+    """Return for each segment the mean confidence in the squares on both sides of it, in percent, rounded down."""
     parts = (np.arange(SEGMENT_SAMPLES) + 0.5) / SEGMENT_SAMPLES
     step = ends - starts
     along = starts[:, None] + parts[:, None] * step[:, None]
@@ -369,12 +235,8 @@ def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list
 
 
 def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    """Yield the facts of rooms and doors, without full stops.
-
-    These are room/1, unseen/2 (the number of squares of the room that no count settles), in/2 for the robot, and for
-    each door that counts as such door/1, width/2 and threshold/5 (hundredths of squares) and connects/3, both ways
-    round. Rooms r1, r2, ... come first, in order, then the doors in the order of `rooms`.
-    """
+    """Yield the facts of rooms and doors, without full stops."""
+    # Rooms r1, r2, ... come first, in order, then the doors in the order of `rooms`.
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):
         yield f"room(r{room})"

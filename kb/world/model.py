@@ -50,164 +50,77 @@ def hundredths(length: float) -> int:
 
 @dataclass(frozen=True)
 class Node:
-    """A part of the world below the floor: an isolated object, or what may be one.
+    """A part of the world below the floor: an isolated object, or what may be one."""
 
-    Attributes
-    ----------
-    name : str
-        o1, o2, ... from 1, in the order in which they were first seen.
-    kind : str
-        What it is believed to be: object.
-    confidence : int
-        Percent of belief that it is of this kind.
-    region : str
-        Its region of the map, `part<n>`.
-    patch : Patch
-        The squares that it covers, or may cover; map frame.
-    open : int
-        How many squares of its region, and of those that touch it, are not determined yet.
-    vague : int
-        How many of these look doubtful, too (see `doubtful_squares`).
-    shape : mapping of str to int
-        Shape class -> confidence in percent.
-    polygon : shapely Polygon or None
-        Its believed outline, map frame, in squares; None while nothing fits.
-    colour : str or None
-        The colour felt on it, one lower-case letter; None when it was not touched.
-    support : tuple of int
-        Numbers of the impressions, from 0, that settled its squares, ascending.
-    movable : int
-        Percent of belief that it can be moved.
-    moved : bool
-        Whether the robot has moved it.
-    whole : bool
-        Whether it was seen to move as one thing.
-    turned : float
-        Degrees by which it was turned since it was first held, counter-clockwise positive.
-    stuck : int
-        How many of the last motions in a row did not move it.
-    dubious : bool
-        Whether it may well lie elsewhere, or have another outline: what is seen agrees ill with how it came there.
-    inexact : bool
-        Whether its place is known only roughly.
-    astray : bool
-        Whether its place is known only roughly until it is turned back: its turns were about a point that is not
-        known exactly, since the robot may have woken elsewhere in its square than believed.
-    short : SideValues
-        By how many squares its west, east, south and north sides may lie further in than those of the outline.
-    insets : SubcellExtent or None
-        How far its sides lie within the squares in which it was seen; None when they are not parallel to the grid.
-    """
-
-    name: str
-    kind: str
-    confidence: int
-    region: str
-    patch: Patch
-    open: int
-    vague: int = 0
-    shape: Mapping[str, int] = field(default_factory=dict)
-    polygon: Any = None
-    colour: str | None = None
-    support: tuple[int, ...] = ()
-    movable: int = 50
-    moved: bool = False
-    whole: bool = False
-    turned: float = 0.0
-    stuck: int = 0
+    name: str  # o1, o2, ... from 1, in the order in which they were first seen.
+    kind: str  # What it is believed to be: object
+    confidence: int  # Percent of belief that it is of this kind
+    region: str  # Its region of the map, `part<n>`
+    patch: Patch  # The squares that it covers, or may cover; map frame
+    open: int  # How many squares of its region, and of those that touch it, are not determined yet
+    vague: int = 0  # How many of these look doubtful, too (see `doubtful_squares`)
+    shape: Mapping[str, int] = field(default_factory=dict)  # Shape class -> confidence in percent
+    polygon: Any = None  # Its believed outline, map frame, in squares; None while nothing fits
+    colour: str | None = None  # The colour felt on it, one lower-case letter; None when it was not touched
+    support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
+    movable: int = 50  # Percent of belief that it can be moved
+    moved: bool = False  # Whether the robot has moved it
+    whole: bool = False  # Whether it was seen to move as one thing
+    turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive
+    stuck: int = 0  # How many of the last motions in a row did not move it
+    # Whether it may well lie elsewhere, or have another outline: what is seen agrees ill with how it came there
     dubious: bool = False
-    inexact: bool = False
+    inexact: bool = False  # Whether its place is known only roughly
+    # Whether its place is known only roughly until it is turned back: its turns were about a point that is not known
+    # exactly, since the robot may have woken elsewhere in its square than believed
     astray: bool = False
+    # By how many squares its west, east, south and north sides may lie further in than those of the outline
     short: SideValues = NO_INSETS
+    # How far its sides lie within the squares in which it was seen; None when they are not parallel to the grid
     insets: SubcellExtent | None = None
 
 
 @dataclass(frozen=True)
 class WorldModel:
-    """All that is believed after one impression.
+    """All that is believed after one impression."""
 
-    Attributes
-    ----------
-    frame : Frame
-        Where the robot frame lies in the map frame.
-    place : (x, y)
-        Where the robot stands, in squares, map frame.
-    view : MapView
-        The occupancy of the squares seen, and of a margin of unseen ones. Arrays of (rows, columns) lie on it: row 0 in
-        the south, column 0 in the west.
-    labels : (rows, columns) int32
-        The number n of each square's region `part<n>`; 0 where nothing was seen.
-    percept : Percept
-        The regions, and which of them touch or surround each other.
-    kinds : Kinds
-        What each region is taken for.
-    objects : tuple of Node
-        The isolated objects, and what may be one, by number.
-    held : str or None
-        The name of the object in hand.
-    looked_from : frozenset of (x, y)
-        The squares on which an impression was received, map frame.
-    barred : frozenset of (x, y)
-        Squares that stopped a motion, or probably did, map frame.
-    spread : float
-        Radians by which the true orientation of the frame may differ from the believed one.
-    likely_spread : float
-        Radians by which it is likely to differ.
-    leeway : (west, south, east, north)
-        How far from the believed point the robot may have woken in its square, in squares, map frame; the first two are
-        at most 0, the last two at least 0.
-    imagined : CompletionSummary
-        Completions: sampled maps that agree with all counts.
-    floor_under_moved : (rows, columns) bool or None
-        Floor of the map without the moved objects, which these may cover now; None while nothing was moved.
-    touch : tuple of str or None
-        The colours felt in the eight DIRECTIONS with this impression, None for floor; () when not known.
-    felt : mapping of (x, y) to str
-        The colour of each square that was felt not to be floor, map frame.
-    unsettled_seams : tuple of (rows, columns) bool
-        Masks of squares on which it is to be felt where exactly one of two things that touch ends.
-    lost : bool
-        Whether localisation failed: the last impressions agree with no belief.
-    anew : bool
-        Whether the robot has forgotten its map and begun a new one.
-    shaken : bool
-        Whether an impression contradicted another one, or a motion ended beside its predicted place.
-    contradicted : bool
-        Whether some fields of this impression agree with nothing that is believed.
-    """
-
-    frame: Frame
-    place: XY
+    frame: Frame  # Where the robot frame lies in the map frame
+    place: XY  # Where the robot stands, in squares, map frame
+    # The occupancy of the squares seen, and of a margin of unseen ones. Arrays of (rows, columns) lie on it: row 0 in
+    # the south, column 0 in the west.
     view: MapView
-    labels: Labels
-    percept: Percept
-    kinds: Kinds
-    objects: tuple[Node, ...]
-    held: str | None = None
-    looked_from: frozenset[Square] = frozenset()
-    barred: frozenset[Square] = frozenset()
-    spread: float = 0.0
-    likely_spread: float = 0.0
+    labels: Labels  # The number n of each square's region `part<n>`; 0 where nothing was seen
+    percept: Percept  # The regions, and which of them touch or surround each other
+    kinds: Kinds  # What each region is taken for
+    objects: tuple[Node, ...]  # The isolated objects, and what may be one, by number
+    held: str | None = None  # The name of the object in hand
+    looked_from: frozenset[Square] = frozenset()  # The squares on which an impression was received, map frame
+    barred: frozenset[Square] = frozenset()  # Squares that stopped a motion, or probably did, map frame
+    spread: float = 0.0  # Radians by which the true orientation of the frame may differ from the believed one
+    likely_spread: float = 0.0  # Radians by which it is likely to differ
+    # How far from the believed point the robot may have woken in its square, in squares, map frame; the first two are
+    # at most 0, the last two at least 0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    imagined: CompletionSummary = NO_COMPLETION_SUMMARY
+    imagined: CompletionSummary = NO_COMPLETION_SUMMARY  # Completions: sampled maps that agree with all counts
+    # Floor of the map without the moved objects, which these may cover now; None while nothing was moved
     floor_under_moved: Bools | None = None
+    # The colours felt in the eight DIRECTIONS with this impression, None for floor; () when not known
     touch: tuple[str | None, ...] = ()
+    # The colour of each square that was felt not to be floor, map frame
     felt: Mapping[Square, str] = field(default_factory=dict)
+    # Masks of squares on which it is to be felt where exactly one of two things that touch ends
     unsettled_seams: tuple[Bools, ...] = ()
-    lost: bool = False
-    anew: bool = False
-    shaken: bool = False
-    contradicted: bool = False
+    lost: bool = False  # Whether localisation failed: the last impressions agree with no belief
+    anew: bool = False  # Whether the robot has forgotten its map and begun a new one
+    shaken: bool = False  # Whether an impression contradicted another one, or a motion ended beside its predicted place
+    contradicted: bool = False  # Whether some fields of this impression agree with nothing that is believed
 
     @cached_property
     def certain(self) -> Bools:
-        """Squares that the counts settle beyond doubt, (rows, columns) bool on the view's arrays.
-
-        While the orientation of the frame is uncertain by a few degrees, squares far from the waking point are not
-        among them: a small rotation would put others in their place, and nothing may have shown it yet. A large error
-        of orientation would have shown, wherever there is something to see. None at all while several frames may be
-        right, or impressions contradict each other.
-        """
+        """Squares that the counts settle beyond doubt, (rows, columns) bool on the view's arrays."""
+        # While the orientation of the frame is uncertain by a few degrees, squares far from the waking point are not
+        # among them: a small rotation would put others in their place, and nothing may have shown it yet. A large error
+        # of orientation would have shown, wherever there is something to see.
         mask: Bools = (self.view.state != OPEN) & self.view.sure
         if 0 < self.spread <= MAX_SMALL_FRAME_DOUBT:
             x, y = self.frame.origin[0] - self.view.west, self.frame.origin[1] - self.view.south
@@ -217,18 +130,12 @@ class WorldModel:
 
     @cached_property
     def told(self) -> Bools:
-        """Squares that are determined, (rows, columns) bool on the view's arrays.
-
-        They are settled by the counts, or have a probability close to 0 or 1 (see `determined_squares`).
-        """
+        """Squares that are determined, (rows, columns) bool on the view's arrays."""
         return determined_squares(self.view)
 
     @cached_property
     def floor(self) -> Bools:
-        """The free region in which the robot stands, (rows, columns) bool on the view's arrays.
-
-        When the robot believes itself in a wall: the nearest free region.
-        """
+        """The free region in which the robot stands, (rows, columns) bool on the view's arrays."""
         row, column = self.view.locate(*self.place)
         if not self.space[row, column] and self.space.any():
             rows, columns = np.nonzero(self.space)
@@ -239,26 +146,17 @@ class WorldModel:
 
     @cached_property
     def space(self) -> Bools:
-        """All squares that were seen and are taken for floor, reachable or not: (rows, columns) bool.
-
-        On the view's arrays. They are occupied with a probability of at most MAX_FREE_PROBABILITY.
-        """
+        """All squares that were seen and are taken for floor, reachable or not: (rows, columns) bool."""
         return free_squares(self.view)
 
     @cached_property
     def verge(self) -> Bools:
-        """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool.
-
-        On the view's arrays. The regions are verge with a confidence of at least PROBABLY_VERGE percent.
-        """
+        """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool."""
         return self._believed_verge(PROBABLY_VERGE)
 
     @cached_property
     def walls(self) -> Bools:
-        """Squares of regions that are almost surely verge, (rows, columns) bool on the view's arrays.
-
-        The regions are verge with a confidence of at least SURELY_VERGE percent.
-        """
+        """Squares of regions that are almost surely verge, (rows, columns) bool on the view's arrays."""
         return self._believed_verge(SURELY_VERGE)
 
     def _believed_verge(self, least: int) -> Bools:
@@ -269,21 +167,13 @@ class WorldModel:
 
     @cached_property
     def protruding(self) -> list[Bools]:
-        """Masks of parts of the bounds that stick out into the floor and were not touched yet, smaller ones first.
-
-        Each is (rows, columns) bool on the view's arrays, row 0 in the south; [] when nothing sticks out. Parts may
-        overlap. Such a part may be a thing that stands against the verge.
-        """
+        """Masks of parts of the bounds that stick out into the floor and were not touched yet, smaller ones first."""
         felt = self._felt_on_view
         return untouched_parts(protrusions(self.space, self._solid, self.view.seen, felt), felt)
 
     @cached_property
     def unfelt_pieces(self) -> list[Bools]:
-        """Masks of pieces of the bounds that may be things, however long, smaller ones first.
-
-        Pieces on which verge was felt are left out, and of the others what is known to be a thing. Each is (rows,
-        columns) bool on the view's arrays, row 0 in the south. Pieces may overlap.
-        """
+        """Masks of pieces of the bounds that may be things, however long, smaller ones first."""
         verge = [square for square, colour in self._felt_on_view.items() if colour == VERGE_TOUCH_COLOUR]
         things: Bools = np.zeros(self.labels.shape, np.bool_)
         for node in self.objects:
@@ -309,52 +199,25 @@ class WorldModel:
         return mask
 
     def object(self, name: str) -> Node | None:
-        """Return the node of the object with this name, `o<n>`; None when there is none.
-
-        A node holds what is believed of the object: its squares and outline (map frame, in squares), shape and colour,
-        and confidences in percent.
-        """
+        """Return the node of the object with this name, `o<n>`; None when there is none."""
         return next((node for node in self.objects if node.name == name), None)
 
     @property
     def place_on_view(self) -> XY:
-        """The robot's place (x, y) in the frame of the view's arrays.
-
-        In squares from the south-west corner of square [0, 0].
-        """
+        """The robot's place (x, y) in the frame of the view's arrays."""
         return self.place[0] - self.view.west, self.place[1] - self.view.south
 
     def place_to_utak(self, x: float, y: float) -> XY:
-        """Return a point in the robot frame: (east, north), squares from where the robot woke.
-
-        Parameters
-        ----------
-        x, y : float
-            The point in the frame of the view's arrays, in squares from the south-west corner of its square [0, 0].
-        """
+        """Return a point in the robot frame: (east, north), squares from where the robot woke."""
         return self.frame.place_to_utak(x + self.view.west, y + self.view.south)
 
     def point_in_words(self, place: XY) -> str:
-        """Return a point as text: `POINT (east north)`, robot frame, in squares with one decimal.
-
-        `place` is (x, y) in the frame of the view's arrays: squares from the south-west corner of its square [0, 0].
-        """
+        """Return a point as text: `POINT (east north)`, robot frame, in squares with one decimal."""
         east, north = self.place_to_utak(*place)
         return f"POINT ({east:.1f} {north:.1f})"
 
     def squares(self, squares: Iterable[Square]) -> Bools:
-        """Return the mask, on the view's arrays, of those of some squares that lie on them.
-
-        Parameters
-        ----------
-        squares : iterable of (x, y)
-            Squares of the map frame.
-
-        Returns
-        -------
-        (rows, columns) bool
-            Row 0 in the south. Squares beyond the arrays are left out.
-        """
+        """Return the mask, on the view's arrays, of those of some squares that lie on them."""
         mask: Bools = np.zeros(self.labels.shape, np.bool_)
         for x, y in squares:
             row, column = self.view.locate(x, y)
@@ -363,21 +226,16 @@ class WorldModel:
         return mask
 
     def mask(self, patch: Patch) -> Bools:
-        """Return the (rows, columns) mask, on the view's arrays, of a patch that lies within them.
-
-        It is bool, row 0 in the south. A patch that reaches beyond them raises ValueError or gives a wrong mask. A
-        patch of the map frame; for one that may reach beyond them see `mask_within`.
-        """
+        """Return the (rows, columns) mask, on the view's arrays, of a patch that lies within them."""
+        # A patch that reaches beyond them raises ValueError or gives a wrong mask.
         mask = np.zeros(self.labels.shape, np.bool_)
         row, column = patch.south - self.view.south, patch.west - self.view.west
         mask[row : row + patch.mask.shape[0], column : column + patch.mask.shape[1]] = patch.mask
         return mask
 
     def mask_within(self, patch: Patch) -> Bools:
-        """Return the (rows, columns) mask, on the view's arrays, of the part of a patch that lies on them.
-
-        Empty when the patch, which is of the map frame, lies beyond them.
-        """
+        """Return the (rows, columns) mask, on the view's arrays, of the part of a patch that lies on them."""
+        # Empty when the patch, which is of the map frame, lies beyond them.
         mask: Bools = np.zeros(self.labels.shape, np.bool_)
         height, width = mask.shape
         row, column = patch.south - self.view.south, patch.west - self.view.west
@@ -390,43 +248,25 @@ class WorldModel:
 
 
 def count_open_squares(mask: Bools, view: MapView) -> tuple[int, int]:
-    """Return how many squares of a region and its edge neighbours are not determined, and how many are doubtful.
-
-    Determined is what the counts settle, or whose probability is within MAX_FREE_PROBABILITY of 0 or 1; doubtful what
-    they do not settle, and whose probability is further than MAX_CLEAR_PROBABILITY from both.
-
-    Both are counts of squares, those of the region and those that share an edge with one of these; the doubtful ones
-    are among the undetermined ones.
-
-    mask : (rows, columns) bool, the squares of the region on the view's arrays.
-    """
+    """Return how many squares of a region and its edge neighbours are not determined, and how many are doubtful."""
     about = with_edge_neighbours(mask)
     return int((about & ~determined_squares(view)).sum()), int((about & doubtful_squares(view)).sum())
 
 
 def free_squares(view: MapView) -> Bools:
-    """Return the squares that were seen and are taken for floor: (rows, columns) bool on the view's arrays.
-
-    They are occupied with a probability of at most MAX_FREE_PROBABILITY.
-    """
+    """Return the squares that were seen and are taken for floor: (rows, columns) bool on the view's arrays."""
     mask: Bools = view.seen & (view.probability <= MAX_FREE_PROBABILITY)
     return mask
 
 
 def occupied_squares(view: MapView) -> Bools:
-    """Return the squares that were seen and are at least as likely occupied as not, (rows, columns) bool.
-
-    The mask is on the view's arrays, row 0 in the south.
-    """
+    """Return the squares that were seen and are at least as likely occupied as not, (rows, columns) bool."""
     mask: Bools = view.seen & (view.probability >= MIN_OBSTACLE_PROBABILITY)
     return mask
 
 
 def determined_squares(view: MapView) -> Bools:
-    """Return the squares that the counts settle or whose probability is close to 0 or 1, (rows, columns) bool.
-
-    Close is within MAX_FREE_PROBABILITY. The mask is on the view's arrays, row 0 in the south.
-    """
+    """Return the squares that the counts settle or whose probability is close to 0 or 1, (rows, columns) bool."""
     mask: Bools = (
         (view.state != OPEN)
         | (view.probability <= MAX_FREE_PROBABILITY)
@@ -436,10 +276,7 @@ def determined_squares(view: MapView) -> Bools:
 
 
 def doubtful_squares(view: MapView) -> Bools:
-    """Return the squares that no count settles and whose probability is far from 0 and 1, (rows, columns) bool.
-
-    Far is more than MAX_CLEAR_PROBABILITY away. The mask is on the view's arrays, row 0 in the south.
-    """
+    """Return the squares that no count settles and whose probability is far from 0 and 1, (rows, columns) bool."""
     mask: Bools = (
         (view.state == OPEN)
         & (view.probability > MAX_CLEAR_PROBABILITY)

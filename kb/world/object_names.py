@@ -18,22 +18,7 @@ class ObjectNames:
         self._count = 0
 
     def assign(self, patches: list[Patch], reserved: Container[str] = ()) -> list[str]:
-        """Return a name for each patch: that of the known patch it overlaps most, else a new one.
-
-        Names that no patch continues are forgotten. The patches are kept for the next call.
-
-        Parameters
-        ----------
-        patches : list of Patch
-            The patches of the new impression, map frame.
-        reserved : container of str
-            Names that no patch may continue: objects that were held bear them, and lie elsewhere now.
-
-        Returns
-        -------
-        list of str
-            The names `o<n>`, in the order of the patches.
-        """
+        """Return a name for each patch: that of the known patch it overlaps most, else a new one."""
         squares = [patch.squares() for patch in patches]
         owner = {square: name for name, known in self._squares.items() if name not in reserved for square in known}
         shared = Counter((owner[square], i) for i, own in enumerate(squares) for square in own if square in owner)

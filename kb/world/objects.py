@@ -45,48 +45,17 @@ MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: f
 
 
 class MapRegions(NamedTuple):
-    """The regions of the map and their interpretation.
+    """The regions of the map and their interpretation."""
 
-    Attributes
-    ----------
-    percept : Percept
-        The regions, and which of them touch or surround each other.
-    labels : (rows, columns) int32 on the arrays of the map view, row 0 in the south
-        The number n of each square's region `part<n>`; 0 where nothing was seen.
-    kinds : Kinds
-        What each region is taken for.
-    unsettled_seams : tuple of (rows, columns) bool
-        Masks of squares on which it is to be felt where exactly one of two things that touch ends.
-    """
-
-    percept: Percept
-    labels: Labels
-    kinds: Kinds
+    percept: Percept  # The regions, and which of them touch or surround each other
+    labels: Labels  # The number n of each square's region `part<n>`; 0 where nothing was seen
+    kinds: Kinds  # What each region is taken for
+    # Masks of squares on which it is to be felt where exactly one of two things that touch ends
     unsettled_seams: tuple[Bools, ...] = ()
 
 
 def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
-    """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own.
-
-    Of a thing that fills a gap in the verge only the squares that were felt are known to belong to it.
-
-    Parameters
-    ----------
-    regions : MapRegions
-        The regions as they were seen: a thing that touches a wall is one region with it.
-    view : MapView
-        The occupancy of the squares.
-    felt : mapping of (x, y) to str
-        The colours of squares that were felt, map frame; VERGE_TOUCH_COLOUR where it was verge.
-
-    Returns
-    -------
-    MapRegions
-        `regions` itself where nothing but verge was felt. Else each thing has a label and a name `part<n>` beyond all
-        others, and is an object with FELT_OBJECT_CONFIDENCE percent; regions of which no square is left are dropped.
-        The numbers of the other regions stay. The result holds the regions, old ones first, the number of each square's
-        region on the arrays of the map view, and what each region is taken for.
-    """
+    """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own."""
     percept, labels, kinds, seams = regions
     bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
     occupied = occupied_squares(view) & bounds
@@ -109,15 +78,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
 def _felt_things_at_walls(
     occupied: Bools, colours: Mapping[tuple[int, int], str], view: MapView
 ) -> tuple[list[Bools], list[Bools]]:
-    """Return the masks of the things that were felt and stand against the verge, or in it; and of unsettled seams.
-
-    What sticks out a little is likeliest a thing; else what the lines between inner corners part from the wall, or what
-    sticks out further, if most of its length was felt; else the felt squares alone. What sticks out and was felt in
-    the colours of several things is parted where these touch.
-
-    occupied : (rows, columns) bool on the view's arrays, squares of what bounds the floor. colours : the colour of each
-    felt square (row, column) of these arrays.
-    """
+    """Return the masks of the things that were felt and stand against the verge, or in it; and of unsettled seams."""
     floor = free_squares(view)
     parts = protrusions(floor, occupied, view.seen)
     partings = [part_by_colour(part, colours) for part in parts if _is_mixed(part, colours)] if view.sure else []
@@ -143,10 +104,7 @@ def _is_mixed(part: Bools, felt: Mapping[tuple[int, int], str]) -> bool:
 
 
 def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
-    """Return whether what was felt of a part stretches over MIN_FELT_SHARE of its longer side.
-
-    part : (rows, columns) bool. felt : the squares (row, column) that were felt.
-    """
+    """Return whether what was felt of a part stretches over MIN_FELT_SHARE of its longer side."""
     touched = np.zeros_like(part)
     for place in felt:
         touched[place] = part[place]
@@ -158,12 +116,7 @@ def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
 
 
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
-    """Return the region `part<label>` of a thing that stands against the verge.
-
-    It holds the name, that it is occupied, the percent of its squares that are settled as occupied, that it touches
-    nothing unseen, its longer side in squares, and its mass (expected occupied squares) in tenths of squares. `thing`
-    is its (rows, columns) mask on the view's arrays, with at least one square.
-    """
+    """Return the region `part<label>` of a thing that stands against the verge."""
     rows, columns = np.nonzero(thing)
     settled = int(100 * (view.state[thing] == OCCUPIED).sum() // len(rows))
     extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
@@ -177,33 +130,7 @@ def seen_objects(
     touches: Touches,
     rules: tuple[Path, ...] = (),
 ) -> tuple[Node, ...]:
-    """Return a node for each region of the map that is, or may be, an isolated object.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model without objects.
-    assign_names : function
-        Returns a name `o<n>` for each patch of squares, in the order of the patches (ObjectNames.assign).
-    measurer : ShapeMeasurer
-        Fits shapes to patches.
-    touches : Touches
-        What was felt, for the objects' colours.
-    rules : tuple of Path
-        Files with the user's own encodings, solved together with kb/asp/shapes.lp.
-
-    Returns
-    -------
-    tuple of Node
-        By the number in their names; () when there are none. A node holds the region's name, its squares as a patch and
-        its believed outline (map frame, in squares; None when no shape fits), shape classes and the belief that it is
-        an object in percent, its colour or None, and how many squares are not determined.
-
-    Raises
-    ------
-    BadInputError
-        The user's encodings are wrong.
-    """
+    """Return a node for each region of the map that is, or may be, an isolated object."""
     felt = _felt_things(model)
     regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds, felt)]
     windows = _windows(model, [label_of(r.name) for r in regions])
@@ -221,11 +148,7 @@ def seen_objects(
 
 
 def _may_be_object(region: Region, kinds: Kinds, felt: Container[int]) -> bool:
-    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent.
-
-    Short enough is an extent of at most LONGEST_OBJECT squares; what was felt to be an object may be longer. `kinds`
-    has the confidences in what each region is, `felt` the labels of regions that were felt to be no verge.
-    """
+    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent."""
     short = region.extent <= LONGEST_OBJECT or label_of(region.name) in felt
     return short and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
 
@@ -239,26 +162,14 @@ def _felt_things(model: WorldModel) -> set[int]:
 
 
 class _Window(NamedTuple):
-    """The part of a map about one region.
+    """The part of a map about one region."""
 
-    Attributes
-    ----------
-    view : MapView
-        The region's containing rectangle, one square wider on each side where the map goes on.
-    mask : (rows, columns) bool
-        The squares of the region, on the arrays of that part.
-    """
-
-    view: MapView
-    mask: Bools
+    view: MapView  # The region's containing rectangle, one square wider on each side where the map goes on
+    mask: Bools  # The squares of the region, on the arrays of that part
 
 
 def _windows(model: WorldModel, labels: list[int]) -> list[_Window]:
-    """Return the parts of the map about the regions with these labels, in their order.
-
-    A label n is that of the region `part<n>`. Each holds the view of the region's containing rectangle, one square
-    wider on each side where the map goes on, and the (rows, columns) mask of the region on the arrays of that view.
-    """
+    """Return the parts of the map about the regions with these labels, in their order."""
     framing = bounding_boxes(model.labels, int(model.labels.max()))
     found = []
     for label in labels:
@@ -278,20 +189,10 @@ def _seen_node(
     kinds: Kinds,
     touches: Touches,
 ) -> Node:
-    """Return the node of a region of the map.
-
-    It holds the squares and the outline (map frame, in squares; None when no shape fits), the belief in percent that it
-    is an object, its shape classes and colour, the impressions that settled its squares, and by how much its sides may
-    lie further in, as of an object that never moved.
-
-    name : that of the node, `o<n>`.
-    window : the map about the region.
-    patch : the region's squares, map frame.
-    measured : its fits and outline.
-    shape : shape class -> confidence in percent.
-    kinds : what each region is taken for.
-    touches : felt colours.
-    """
+    """Return the node of a region of the map."""
+    # None when no shape fits), the belief in percent that it is an object, its shape classes and colour, the
+    # impressions that settled its squares, and by how much its sides may lie further in, as of an object that never
+    # moved.
     open_, doubtful = count_open_squares(window.mask, window.view)
     return Node(
         name=name,
@@ -311,20 +212,14 @@ def _seen_node(
 
 
 def _support(mask: Bools, view: MapView) -> tuple[int, ...]:
-    """Return the numbers of the impressions that settled the squares of a mask, ascending; () when nothing is settled.
-
-    The mask is (rows, columns) bool on the view's arrays.
-    """
+    """Return the numbers of the impressions that settled the squares of a mask, ascending."""
+    # () when nothing is settled.
     numbers = np.unique(view.settled_by[mask & ((view.state == OCCUPIED) | (view.state == FREE))])
     return tuple(int(n) for n in numbers if n >= 0)
 
 
 def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
-    """Return the facts for kb/asp/shapes.lp from the measurements of objects by name, without full stops.
-
-    For each object N: `open_squares(N,Count)`, `full_squares(N,Count)`, and for each shape class that fits
-    `fit(N,Class,Misfit,Rank)`: the number of squares that it leaves wrong, and its rank from 1, the likeliest.
-    """
+    """Return the facts for kb/asp/shapes.lp from the measurements of objects by name, without full stops."""
     facts = []
     for name, result in measured.items():
         facts += [f"open_squares({name},{result.open})", f"full_squares({name},{result.full})"]
@@ -333,25 +228,7 @@ def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
 
 
 def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...] = ()) -> HeldObject:
-    """Return an object that was held, classified anew if its shape is open, since it was found to be larger.
-
-    Its shape is then measured from where it lay when it was first held. The result is a new object that differs in
-    `shape` alone (shape class -> confidence in percent; {} when nothing fits), with its outline in the map frame.
-
-    Parameters
-    ----------
-    load : HeldObject
-        The object; it is returned as it is when its shape is not {}.
-    measurer : ShapeMeasurer
-        Fits shapes to the squares of its outline.
-    rules : tuple of Path
-        Files with the user's own encodings, solved together with kb/asp/shapes.lp.
-
-    Raises
-    ------
-    BadInputError
-        The user's encodings are wrong.
-    """
+    """Return an object that was held, classified anew if its shape is open, since it was found to be larger."""
     if load.shape:
         return load
     measured = measurer.measure_whole(patch_of_polygon(load.first))
@@ -360,12 +237,7 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
 
 
 def grasped(node: Node) -> HeldObject:
-    """Return an object as it is when it is held for the first time.
-
-    The outline of the node must be known. The object lies where the node's outline lies, map frame, in squares, and was
-    not turned, nor seen to move; name, shape, colour and the impressions that support it are the node's. Its outline is
-    exact where its corners are on the grid; then its sides may lie less than 1 square further in.
-    """
+    """Return an object as it is when it is held for the first time."""
     return HeldObject(
         name=node.name,
         polygon=node.polygon,
@@ -382,32 +254,7 @@ def grasped(node: Node) -> HeldObject:
 def within_reach(
     objects: Iterable[Node], touches: Touches, frame: Frame, occupancy: OccupancyMap, square: Square, direction: str
 ) -> list[Node]:
-    """Return the objects of which one may be on the adjacent square in a direction.
-
-    These are the objects that may cover that square; they are returned as their nodes. Without any: the objects near
-    it, if the colour felt there may be theirs, and if the squares that the direction may name are not all settled as
-    occupied, as a wall is.
-
-    Parameters
-    ----------
-    objects : iterable of Node
-        The objects believed in.
-    touches : Touches
-        What is felt now.
-    frame : Frame
-        The believed frame.
-    occupancy : OccupancyMap
-        The map.
-    square : (x, y)
-        The robot's square, map frame.
-    direction : str
-        One of the eight DIRECTIONS of the robot frame.
-
-    Returns
-    -------
-    list of Node
-        In the order of `objects`; [] when there is none.
-    """
+    """Return the objects of which one may be on the adjacent square in a direction."""
     x, y = square
     adjacent = frame.beside(direction)
     named = None if adjacent is None else (x + adjacent[0], y + adjacent[1])
@@ -418,18 +265,7 @@ def within_reach(
 def _felt_objects(
     objects: Iterable[Node], touches: Touches, frame: Frame, occupancy: OccupancyMap, square: Square, direction: str
 ) -> list[Node]:
-    """Return the objects near the adjacent square in a direction that may have the colour felt there.
-
-    Near are those that may cover one of the squares that the direction may name, or one of the 8 squares about these.
-    An object whose colour is not known may have any. [] when floor is felt, or when the squares that the direction may
-    name are all settled as occupied. The nodes come in the order of `objects`.
-
-    touches : what is felt now in each direction.
-    frame : the believed frame, which tells the squares that a direction may name.
-    occupancy : the map, with what the counts settle of each square.
-    square : the robot's own square (x, y), map frame.
-    direction : one of the eight DIRECTIONS of the robot frame.
-    """
+    """Return the objects near the adjacent square in a direction that may have the colour felt there."""
     colour = touches.felt_in(direction)
     x, y = square
     named = [(x + i, y + j) for i, j in frame.adjacent_squares(direction)]
@@ -441,31 +277,10 @@ def _felt_objects(
 
 
 def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
-    """Lay an object that was held upon the map of a model, as a region of its own.
-
-    The robot's own square stays its own, since the robot is a point; but if the object may cover a part of that square,
-    the square is no longer settled. Walls that the object would enter only by the tolerance of its outline stay walls.
-
-    The squares that it surely covers become occupied. Those that it may cover become unsettled where they were free;
-    they are occupied with LAID_PROBABILITY within its believed outline, and with PLAY_PROBABILITY at least outside of
-    it.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model without the object.
-    load : HeldObject
-        The object.
-
-    Returns
-    -------
-    model : WorldModel
-        A new model with one more region, the last one: its number is the greatest in `labels`, and it is an object with
-        100 percent. View (states, probabilities, seen squares), labels and kinds are changed; `percept` and `objects`
-        are not. Where the object may cover no square but settled walls, no square has the new number.
-    patch : Patch
-        The squares that the object covers, or may cover; map frame.
-    """
+    """Lay an object that was held upon the map of a model, as a region of its own."""
+    # The robot's own square stays its own, since the robot is a point; but if the object may cover a part of that
+    # square, the square is no longer settled. Walls that the object would enter only by the tolerance of its outline
+    # stay walls.
     view, labels = model.view, model.labels.copy()
     lies, sure, possible = (
         model.squares(p.squares()) for p in (patch_of_polygon(load.polygon), load.sure, load.possible)
@@ -481,10 +296,7 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     outside = open_ & ~lies
 
     def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return (rows, columns) probabilities, 0 to 1, of squares to be occupied, changed for the object.
-
-        `chance` are those without it, on the view's arrays; a new array is returned.
-        """
+        """Return (rows, columns) probabilities, 0 to 1, of squares to be occupied, changed for the object."""
         may = np.where(outside, np.maximum(chance, np.float32(PLAY_PROBABILITY)), np.float32(LAID_PROBABILITY))
         return np.where(sure, np.float32(1), np.where(open_, may, chance))
 
@@ -499,22 +311,7 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
 
 
 def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
-    """Return the node of an object that was held.
-
-    It can be moved with 99 percent belief when it was seen to move, with 0 after MIN_STUCK_MOTIONS motions in a row
-    that did not move it, else with 50. The node holds the squares and the believed outline (map frame, in squares), the
-    region's name, shape and colour as before the grasp, the degrees by which it was turned (counter-clockwise
-    positive), and that it is an object with 100 percent.
-
-    Parameters
-    ----------
-    load : HeldObject
-        The object that was held, where it is believed to lie now; map frame.
-    patch : Patch
-        The squares that it covers, or may cover; map frame.
-    label : int
-        The number n of its region `part<n>`.
-    """
+    """Return the node of an object that was held."""
     movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else 50
     return Node(
         name=load.name,

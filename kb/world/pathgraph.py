@@ -8,25 +8,7 @@ from kb.world.rooms import Rooms, count_crossings
 
 
 def pathgraph_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    """Yield the pathgraph of the floor on which the robot stands, without full stops.
-
-    The pathgraph are the junctions and ends of the skeleton of the floor (the lines of greatest clearance), and the
-    chains between them; isolated objects are no floor. Coordinates are hundredths of squares, robot frame.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model.
-    rooms : Rooms
-        Its rooms and doors.
-
-    Yields
-    ------
-    str
-        `junction(J,East,North,Clearance)` for each junction or end j1, j2, ...; then for each chain
-        `link(L,J1,J2,Length,Clearance)` with its least clearance, and `crosses(L,D)` for each door that counts as such
-        and across whose neck it leads. Nothing where no floor is known.
-    """
+    """Yield the pathgraph of the floor on which the robot stands, without full stops."""
     if not model.floor.any():
         return
     graph = Screen(model.floor).pathgraph_arrays

@@ -26,15 +26,7 @@ class PlaceNames:
         self._rooms: dict[int, Longs] = {}  # by the number of a room: its squares, each as one number, sorted
 
     def named(self, rooms: Rooms, model: WorldModel) -> Rooms:
-        """Return rooms and doors under the names that they have for good; remember where they are.
-
-        A room is the one with most of whose squares it agrees, by their share; a door the nearest within SAME_DOOR
-        squares. What is neither gets a number that nothing had yet.
-
-        Parameters
-        ----------
-        rooms : as of `kb.world.rooms.rooms_of`. model : the world model to which they belong.
-        """
+        """Return rooms and doors under the names that they have for good; remember where they are."""
         found = {int(n): _squares_of(int(n), rooms, model) for n in np.unique(rooms.labels) if n != NO_ROOM}
         numbers = {NO_ROOM: NO_ROOM} | self._same_rooms(found)
         for number in found:
@@ -55,10 +47,7 @@ class PlaceNames:
         return replace(rooms, doors=doors, labels=table[rooms.labels])
 
     def _same_rooms(self, found: Mapping[int, Longs]) -> dict[int, int]:
-        """Return the numbers that rooms had before, by their present ones; each at most once.
-
-        found : the squares of each room. Where several agree alike, the lower number counts.
-        """
+        """Return the numbers that rooms had before, by their present ones; each at most once."""
         shares = [
             (-np.isin(squares, now, assume_unique=True).mean(), known, number)
             for known, squares in self._rooms.items()

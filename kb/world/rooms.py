@@ -37,26 +37,15 @@ NO_ROOM = 0  # the label of floor that is part of no room
 
 @dataclass(frozen=True)
 class Door:
-    """A door: a neck of the floor at most half as wide as the floor on both sides of it.
+    """A door: a neck of the floor at most half as wide as the floor on both sides of it."""
 
-    Attributes
-    ----------
-    name : str
-        d1, d2, ... in the order of `Rooms.doors`; kb.world.place_names keeps the names in a run.
-    a, b : (x, y)
-        The ends of its neck, on the walls, in squares, view frame (origin at the south-west corner of the map view's
-        square [0, 0]): the left and the right one as seen by a robot that goes from the first of `sides` to the second.
-    sides : (int, int)
-        The numbers of the rooms on its two sides; the same twice when both sides are one room.
-    confidence : int
-        Percent of belief that it is a door.
-    """
-
-    name: str
+    name: str  # d1, d2, ... in the order of `Rooms.doors`; kb.world.place_names keeps the names in a run.
+    # The ends of its neck, on the walls, in squares, view frame (origin at the south-west corner of the map view's
+    # square [0, 0]): the left and the right one as seen by a robot that goes from the first of `sides` to the second
     a: XY
     b: XY
-    sides: tuple[int, int]
-    confidence: int
+    sides: tuple[int, int]  # The numbers of the rooms on its two sides; the same twice when both sides are one room
+    confidence: int  # Percent of belief that it is a door
 
     @property
     def sure(self) -> bool:
@@ -75,30 +64,18 @@ class Door:
 
     @property
     def place(self) -> XY:
-        """The middle of its neck, (x, y) in squares, view frame.
-
-        The view frame has its origin at the south-west corner of the map view's square [0, 0].
-        """
+        """The middle of its neck, (x, y) in squares, view frame."""
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
 class Opening(NamedTuple):
-    """A neck that is no door, since the floor is not twice as wide on both sides.
+    """A neck that is no door, since the floor is not twice as wide on both sides."""
 
-    Attributes
-    ----------
-    a, b : (x, y)
-        Its ends, on the walls, in squares, view frame (origin at the south-west corner of the map view's square [0,
-        0]).
-    least : float
-        The width of the floor on the narrower side, in squares.
-    narrow, wide : (x, y)
-        The centres of squares just beyond it, on the narrower side and on the wider one; (x, y) in squares, view frame.
-    """
-
+    # Its ends, on the walls, in squares, view frame (origin at the south-west corner of the map view's square [0, 0])
     a: XY
     b: XY
-    least: float
+    least: float  # The width of the floor on the narrower side, in squares
+    # The centres of squares just beyond it, on the narrower side and on the wider one; (x, y) in squares, view frame
     narrow: XY
     wide: XY
 
@@ -109,33 +86,20 @@ class Opening(NamedTuple):
 
     @property
     def place(self) -> XY:
-        """The middle of the neck, (x, y) in squares, view frame.
-
-        The view frame has its origin at the south-west corner of the map view's square [0, 0].
-        """
+        """The middle of the neck, (x, y) in squares, view frame."""
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
 @dataclass(frozen=True)
 class Rooms:
-    """The rooms of the floor.
+    """The rooms of the floor."""
 
-    Attributes
-    ----------
-    doors : tuple of Door
-        All necks that may be doors, likely or not; rooms end at each of them.
-    labels : (rows, columns) int32
-        The number of the room of each square of known floor, 0 for none; the room in which the robot woke is 1. On the
-        arrays of the map view: row 0 in the south, column 0 in the west.
-    doorways : (rows, columns) bool
-        Squares between the walls of a door, and those close to it: they belong to no room for certain.
-    opening : Opening or None
-        Of the necks that are no doors the one that comes nearest to being one; None when there is none.
-    """
-
-    doors: tuple[Door, ...]
+    doors: tuple[Door, ...]  # All necks that may be doors, likely or not; rooms end at each of them
+    # The number of the room of each square of known floor, 0 for none; the room in which the robot woke is 1. On the
+    # arrays of the map view: row 0 in the south, column 0 in the west.
     labels: Labels
-    doorways: Bools
+    doorways: Bools  # Squares between the walls of a door, and those close to it: they belong to no room for certain
+    # Of the necks that are no doors the one that comes nearest to being one; None when there is none
     opening: Opening | None = None
 
     @property
@@ -144,35 +108,11 @@ class Rooms:
         return tuple(door for door in self.doors if door.sure)
 
     def leading(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> list[Door]:
-        """Return the doors of a room, in the order of `doors`; [] when it has none.
-
-        A door holds its name, the ends of its neck (view frame, in squares), the numbers of the rooms on its two sides
-        and its confidence in percent.
-
-        Parameters
-        ----------
-        room : int
-            The number of the room.
-        least : int
-            Percent: the least confidence of the doors that are returned.
-        """
+        """Return the doors of a room, in the order of `doors`; [] when it has none."""
         return [door for door in self.doors if door.confidence >= least and room in door.sides]
 
     def beyond(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> Bools:
-        """Return the squares of all rooms that share a door with a room, doorways left out.
-
-        Parameters
-        ----------
-        room : int
-            The number of the room.
-        least : int
-            Percent: the least confidence of such a door.
-
-        Returns
-        -------
-        (rows, columns) bool
-            On the arrays of `labels`; the room itself is left out, and nothing is set when it has no such door.
-        """
+        """Return the squares of all rooms that share a door with a room, doorways left out."""
         others = {side for door in self.leading(room, least) for side in door.sides} - {room}
         mask: Bools = np.isin(self.labels, sorted(others)) & ~self.doorways
         return mask
@@ -182,31 +122,7 @@ NO_ROOMS = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
 
 
 def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | None = None) -> Rooms:
-    """Divide the known floor into rooms, and find the doors between them.
-
-    Parameters
-    ----------
-    model : WorldModel
-        The world model.
-    rules : tuple of Path
-        Files with the user's own encodings, solved together with kb/asp/rooms.lp.
-    verge : (rows, columns) bool, optional
-        Squares that bound the rooms, on the view's arrays; without it all that the model takes for verge.
-
-    Returns
-    -------
-    Rooms
-        The number of each square's room, from 1 (the one in which the robot woke), 0 for none, and the squares of
-        doorways, both on the view's arrays; all necks that may be doors, d1, d2, ... in the order in which they were
-        found, each with its ends (view frame, in squares), the rooms on its two sides and its confidence in percent;
-        and of the other necks the nearest to being a door, or None. One room without doors, on all squares, where there
-        is no verge; no room where no floor is known.
-
-    Raises
-    ------
-    BadInputError
-        The user's encodings are wrong.
-    """
+    """Divide the known floor into rooms, and find the doors between them."""
     verge = model.verge if verge is None else verge
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
@@ -234,15 +150,10 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | Non
 def _judge_necks(
     necks: list[DoorwayNeck], model: WorldModel, rules: tuple[Path, ...]
 ) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
-    """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door.
-
-    The first is a list of (neck, percent) in the order of `necks`; the second holds the ends of that neck, the width of
-    the floor on its narrower side in squares, and a point beyond it on both sides, view frame; it is None when every
-    neck is a door. Necks with a certainty of 0 percent are no doors, and count for neither.
-
-    necks : the necks with their certainty in percent. model : the world model, whose frame the record needs. rules :
-        files with the user's own encodings; () for none.
-    """
+    """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door."""
+    # The first is a list of (neck, percent) in the order of `necks`; the second holds the ends of that neck, the width
+    # of the floor on its narrower side in squares, and a point beyond it on both sides, view frame; it is None when
+    # every neck is a door.
     known = [neck for neck in necks if neck.certainty > 0]
     facts = []
     for number, (passage, _, certainty) in enumerate(known):
@@ -258,21 +169,13 @@ def _judge_necks(
 
 
 def _opening(neck: DoorwayNeck) -> Opening:
-    """Return a neck that is no door as an Opening: the width and the square of its narrower side come first.
-
-    It holds the two ends of the line across it (left one first as seen from its first side), the width of the floor on
-    its narrower side, and the centres (x, y) of a square beyond it on the narrower and on the wider side, in squares,
-    view frame.
-    """
+    """Return a neck that is no door as an Opening: the width and the square of its narrower side come first."""
     (least, narrow), (_, wide) = sorted(zip(neck.passage.sides, neck.passage.gates, strict=True))
     return Opening(*neck.line, 2 * least, narrow, wide)
 
 
 def _numbers_from(number: int, start: int) -> Ints:
-    """Return new numbers for the parts 0 to `number`: `start` becomes 1, and 1 becomes `start`; 0 stays.
-
-    The result is (number + 1,) int32: index a part by its old number. Nothing changes for a `start` of 0 or less.
-    """
+    """Return new numbers for the parts 0 to `number`: `start` becomes 1, and 1 becomes `start`; 0 stays."""
     order = np.arange(number + 1, dtype=np.int32)
     if start > 0:
         order[[1, start]] = order[[start, 1]]
@@ -280,14 +183,7 @@ def _numbers_from(number: int, start: int) -> Ints:
 
 
 def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
-    """Return the rooms on both sides of a passage, and divide the doorway between them in `labels`, in place.
-
-    `labels` is (rows, columns) int32 on the view's arrays: numbers of rooms, NO_ROOM on floor of no room, -1 where
-    there is no floor. The passage is in the view frame. The result is the room on its first side, then that on its
-    second. Each square between its mouths gets the room of the nearer one, of the first at equal distances. Where
-    nothing is seen beyond the doorway, its half of the doorway is a room of its own. A side without any room counts as
-    that of the other one; (0, 0) when neither has one.
-    """
+    """Return the rooms on both sides of a passage, and divide the doorway between them in `labels`, in place."""
     columns, rows = np.array(passage.between, np.int64).reshape(-1, 2).T
     away = [_distances_to_line(mouth, columns, rows) for mouth in passage.mouths]
     sides = [_label_beyond(passage, number, labels) for number in (0, 1)]
@@ -301,21 +197,13 @@ def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
 
 
 def _within(labels: Labels, columns: Longs, rows: Longs) -> Bools:
-    """Return which of some squares, given by index, lie within an array: (n,) bool.
-
-    columns, rows : (n,) indices, perhaps negative or too great. labels : the array, of which only the shape counts.
-    """
+    """Return which of some squares, given by index, lie within an array: (n,) bool."""
     inside: Bools = (rows >= 0) & (columns >= 0) & (rows < labels.shape[0]) & (columns < labels.shape[1])
     return inside
 
 
 def _label_beyond(passage: Passage, number: int, labels: Labels) -> int:
-    """Return the label of the room that begins beyond mouth `number` (0 or 1) of a passage; 0 where none is seen.
-
-    It is that of the nearest square of a room to the passage's gate there, within MAX_MOUTH_DISTANCE squares of the
-    mouth. `labels` is (rows, columns) int32 on the view's arrays, numbers of rooms above 0; the passage is in the view
-    frame.
-    """
+    """Return the label of the room that begins beyond mouth `number` (0 or 1) of a passage; 0 where none is seen."""
     (x, y), mouth = passage.gates[number], passage.mouths[number]
     rows, columns = np.nonzero(labels > 0)
     (ax, ay), (bx, by) = mouth if number == 0 else mouth[::-1]
@@ -329,11 +217,7 @@ def _label_beyond(passage: Passage, number: int, labels: Labels) -> int:
 
 
 def _distances_to_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
-    """Return the distances of the centres of squares from a line segment: (n,) float64, in squares.
-
-    `line` holds two different points (x, y) in the view frame; columns, rows : (n,) indices of the view's arrays. The
-    results are rounded to 9 decimals.
-    """
+    """Return the distances of the centres of squares from a line segment: (n,) float64, in squares."""
     a, along = np.array(line[0]), np.subtract(line[1], line[0])
     points = np.stack([columns + 0.5, rows + 0.5], axis=-1) - a
     part = np.clip(points @ along / (along @ along), 0.0, 1.0)
@@ -342,11 +226,8 @@ def _distances_to_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
 
 
 def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
-    """Return the squares in front of both mouths of a passage, up to DOORWAY_REACH squares away: (rows, columns) bool.
-
-    They are as wide as the mouth and one square more on both ends. The passage is in the view frame; `shape` is (rows,
-    columns) of the view's arrays.
-    """
+    """Return the squares in front of both mouths of a passage, up to DOORWAY_REACH squares away."""
+    # (rows, columns) bool.
     mask = np.zeros(shape, np.bool_)
     for mouth, outward in zip(passage.mouths, (-1, 1), strict=True):
         middle, along = np.add(*mouth) / 2, np.subtract(mouth[1], mouth[0])
@@ -362,35 +243,12 @@ def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
 
 
 def count_crossings(points: Floats, door: Door) -> int:
-    """Return the net number of passes of a track through the neck of a door; there and back counts as none.
-
-    Parameters
-    ----------
-    points : (n, 2) float64
-        The track, (x, y) in squares, view frame (origin at the south-west corner of the map view's square [0, 0]),
-        oldest point first.
-    door : Door
-        The door.
-
-    Returns
-    -------
-    int
-        Not negative, whichever way the passes lead.
-    """
+    """Return the net number of passes of a track through the neck of a door; there and back counts as none."""
     return abs(int(_passes(points, door).sum()))
 
 
 def went_through(track: Floats, door: Door) -> bool:
-    """Return whether a track was ever on the other side of a door than it began; True also when it came back later.
-
-    Parameters
-    ----------
-    track : (n, 2) float64
-        The points of the track, (x, y) in squares, view frame (origin at the south-west corner of the map view's square
-        [0, 0]), oldest first.
-    door : Door
-        The door.
-    """
+    """Return whether a track was ever on the other side of a door than it began; True also when it came back later."""
     return bool(_passes(track, door).cumsum().any())
 
 

@@ -25,39 +25,23 @@ START_WORD = "start"  # in stood(start): the robot stands where it was when the 
 
 
 class PlanGoal(NamedTuple):
-    """A goal for which the plan was made.
+    """A goal for which the plan was made."""
 
-    Attributes
-    ----------
-    name : g1, g2, ... in the order of the task.
-    means : what the task states for it, as facts without full stops; () for a goal that a user's rule added.
-    attained : whether the plan attains it.
-    """
-
-    name: str
+    name: str  # g1, g2, ... in the order of the task.
+    # What the task states for it, as facts without full stops; () for a goal that a user's rule added
     means: tuple[str, ...]
-    attained: bool
+    attained: bool  # whether the plan attains it
 
 
 class PlanStep(NamedTuple):
-    """A step of the plan.
+    """A step of the plan."""
 
-    Attributes
-    ----------
-    number : its number; 0 is the present step.
-    step : as the encoding writes it, such as carry(o1,g1_r2).
-    serves : the names of the goals that hold at its place.
-    doors : the doors on its way.
-    commands : about how many commands it takes; None when geometry was not asked.
-    verified : whether its way is surely free; else it is only hoped to be.
-    """
-
-    number: int
-    step: str
-    serves: tuple[str, ...]
-    doors: tuple[str, ...]
-    commands: int | None
-    verified: bool
+    number: int  # its number; 0 is the present step
+    step: str  # as the encoding writes it, such as carry(o1,g1_r2)
+    serves: tuple[str, ...]  # the names of the goals that hold at its place
+    doors: tuple[str, ...]  # the doors on its way
+    commands: int | None  # about how many commands it takes; None when geometry was not asked
+    verified: bool  # whether its way is surely free; else it is only hoped to be
 
     @property
     def certainty(self) -> str:
@@ -91,18 +75,11 @@ class PlanStep(NamedTuple):
 
 
 class PlanRefutation(NamedTuple):
-    """A step that geometry refuted when the plan was made.
+    """A step that geometry refuted when the plan was made."""
 
-    Attributes
-    ----------
-    number : the number of the refutation.
-    step : as the encoding writes it.
-    circumstances : on what the refutation rests: at(N,P), stood(N) and shut(D), as text.
-    """
-
-    number: int
-    step: str
-    circumstances: tuple[str, ...]
+    number: int  # the number of the refutation
+    step: str  # as the encoding writes it
+    circumstances: tuple[str, ...]  # on what the refutation rests: at(N,P), stood(N) and shut(D), as text
 
     @property
     def words(self) -> str:
@@ -113,27 +90,17 @@ class PlanRefutation(NamedTuple):
 
 @dataclass(frozen=True)
 class StatedPlan:
-    """The task plan of a step: what the robot means to do, from its present step on; or that there is none.
+    """The task plan of a step: what the robot means to do, from its present step on; or that there is none."""
 
-    While no plan attains all goals there is no cost: the goals tell which are not attained, and the refutations why;
-    steps are there where something is open that they settle.
-
-    Attributes
-    ----------
-    goals : the goals for which it was made, in the order of the task.
-    steps : the steps that are left, in order.
-    refutations : the steps that geometry refuted when it was made.
-    cost : about how many commands the whole plan takes, with the steps that are done; None where it is not stated, or
-        geometry was not asked, because there is one way to plan it.
-    least : a number of commands that no plan stays below, by the estimates of the search; None likewise.
-    proved : whether the search ended with it; else it is the best one that was found up to the bound on rounds.
-    """
-
-    goals: tuple[PlanGoal, ...]
-    steps: tuple[PlanStep, ...]
-    refutations: tuple[PlanRefutation, ...] = ()
+    goals: tuple[PlanGoal, ...]  # the goals for which it was made, in the order of the task
+    steps: tuple[PlanStep, ...]  # the steps that are left, in order
+    refutations: tuple[PlanRefutation, ...] = ()  # the steps that geometry refuted when it was made
+    # About how many commands the whole plan takes, with the steps that are done; None where it is not stated, or
+    # geometry was not asked, because there is one way to plan it
     cost: int | None = None
+    # A number of commands that no plan stays below, by the estimates of the search; None likewise
     least: int | None = None
+    # Whether the search ended with it; else it is the best one that was found up to the bound on rounds
     proved: bool = False
 
     @property
@@ -206,17 +173,7 @@ class StatedPlan:
 
 
 def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
-    """Return the plan that the facts of a step state, or that no plan was found; None when they say nothing of it.
-
-    Parameters
-    ----------
-    facts : the world model of a step, as facts, with or without full stops.
-    name : what messages call them.
-
-    Raises
-    ------
-    BadInputError : facts of a plan are damaged.
-    """
+    """Return the plan that the facts of a step state, or that no plan was found; None when they say nothing of it."""
     text = [f"{fact.removesuffix('.')}." for fact in facts if fact.partition("(")[0] in PLAN_NAMES]
     source = source_from_bytes(name, "\n".join(text).encode("utf-8", "replace"))
     found = [fact for fact in parse_facts(source) if (fact.name, len(fact.args)) in PLAN_PREDICATES]

@@ -31,19 +31,10 @@ from planner.tasking.rule_effects import rules_that_close
 
 
 class Activities:
-    """Does what the agenda chooses, and owns what carries it out.
-
-    Attributes
-    ----------
-    errands : carries out the task plan.
-    keeper : tells whether constraints were kept.
-    """
+    """Does what the agenda chooses, and owns what carries it out."""
 
     def __init__(self, task: Task, pull: bool) -> None:
-        """Make activities of which none was begun.
-
-        task : its constraints are looked at. pull : whether a held object may be pulled.
-        """
+        """Make activities of which none was begun."""
         where = PerModel(destination)
         self._transporter, self._clearer, self._trials = Transporter(), ObstacleClearer(), Trials()
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
@@ -63,12 +54,8 @@ class Activities:
         return is_so
 
     def decide(self, turn: StageTurn) -> Decision:
-        """Return the next command for a stage, or the verdict with which the robot gives up; done when it is attained.
-
-        Parameters
-        ----------
-        turn : the stage and what is believed; a stage without goals when all are attained.
-        """
+        """Return the next command for a stage, or the verdict with which the robot gives up."""
+        # Done when it is attained.
         self._own.note(turn)
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
@@ -109,10 +96,7 @@ class Activities:
         yield from turn.situation.facts_for_rules("agenda")
 
     def _do(self, activity: Activity, turn: StageTurn, last: Decision) -> Decision:
-        """Return what an activity comes to.
-
-        activity : what is done. turn : the stage and what is believed. last : the last verdict of an activity.
-        """
+        """Return what an activity comes to."""
         stage, situation, clearer = turn.stage, turn.situation, self._clearer
         goals = turn.goals_of(activity.subject)
         doing: Mapping[str, Callable[[], Decision]] = {

@@ -12,16 +12,10 @@ from planner.navigation.subgoals import PLANNER_ASP
 
 
 class Activity(NamedTuple):
-    """Something that the robot may do next.
+    """Something that the robot may do next."""
 
-    Attributes
-    ----------
-    kind : what it does, as planner/asp/agenda.lp names it, such as carry.
-    subject : what it is about, such as the name of a goal; "" for nothing in particular.
-    """
-
-    kind: str
-    subject: str = ""
+    kind: str  # what it does, as planner/asp/agenda.lp names it, such as carry.
+    subject: str = ""  # what it is about, such as the name of a goal; "" for nothing in particular
 
     def __str__(self) -> str:
         """Return the activity as the encoding writes it."""
@@ -29,16 +23,10 @@ class Activity(NamedTuple):
 
 
 class StageEnd(NamedTuple):
-    """Nothing is left to do for a stage.
+    """Nothing is left to do for a stage."""
 
-    Attributes
-    ----------
-    verdict : `done` for a stage that is attained; else the verdict with which the robot gives up.
-    forbidden : by which users' rules all that may still be done is forbidden, in words; "" where it is not.
-    """
-
-    verdict: TaskVerdict
-    forbidden: str = ""
+    verdict: TaskVerdict  # `done` for a stage that is attained; else the verdict with which the robot gives up
+    forbidden: str = ""  # by which users' rules all that may still be done is forbidden, in words; "" where it is not
 
 
 def _chooses_nothing(atoms: Sequence[Any]) -> bool:
@@ -50,12 +38,7 @@ class Agenda:
     """The choice among activities within one decision, with the results of those that were tried."""
 
     def __init__(self, given: Iterable[str], rules: Sequence[Path], about: Sequence[str]) -> None:
-        """Make an agenda on which nothing was done.
-
-        given : the facts of the present stage, without full stops, as planner/asp/agenda.lp wants them.
-        rules : the user's own encodings.
-        about : what the names of goals mean, in words; for the record of decisions alone.
-        """
+        """Make an agenda on which nothing was done."""
         self._facts, self._about = list(given), list(about)
         self._files = [PLANNER_ASP / "agenda.lp", *rules]
         self._stuck: list[str] = []

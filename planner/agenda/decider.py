@@ -38,21 +38,7 @@ PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that some
 
 
 class Decider:
-    """Decides, and owns everything that remembers earlier decisions.
-
-    The executor, the pursuer and the verifier belong to it alone: it lends them for the time of a decision.
-
-    Attributes
-    ----------
-    task, paths, rules : the task, the name of the path-finder and the user's encodings, as given.
-    stages : the stages of the task, in order.
-    attained : how many of them are attained.
-    bound : what the task's parameters mean: parameter -> name of a node.
-    rooms, corners : as last believed, in squares, view frame; none before the first decision.
-    place_names : keeps the names of doors and rooms.
-    pursuer : walks after subgoals.
-    executor : follows manipulation plans.
-    """
+    """Decides, and owns everything that remembers earlier decisions."""
 
     def __init__(
         self,
@@ -64,18 +50,7 @@ class Decider:
         executor: PlanExecutor | None = None,
         pursuer: Pursuer | None = None,
     ) -> None:
-        """Make a decider that has decided nothing.
-
-        Parameters
-        ----------
-        task : the goals and what is said of their parameters.
-        paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
-        rules : the user's own encodings.
-        pull : whether a held object may be pulled.
-        bound : what parameters of the task are known to mean: parameter -> name of a node; nothing if None.
-        executor : follows manipulation plans; a new one if None. It belongs to this decider from now on.
-        pursuer : walks after subgoals; a new one if None. It belongs to this decider from now on.
-        """
+        """Make a decider that has decided nothing."""
         self.task, self.paths, self.rules = task, paths, rules
         self.bound: Mapping[str, str] = bound or {}
         self.stages = stages(task)
@@ -96,10 +71,7 @@ class Decider:
 
     @property
     def plan(self) -> TaskPlan | None:
-        """The task plan under way, from its present step on; None while there is none.
-
-        Where something is open it is the plan that settles that; goals that depend on it are unmet in it.
-        """
+        """The task plan under way, from its present step on; None while there is none."""
         return self._intention.followed
 
     @property
@@ -113,24 +85,7 @@ class Decider:
         return self._activities.errands.blamed if self._intention.plan is None else ""
 
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
-        """Return what to do after an impression.
-
-        Stages that are attained are counted as such for good.
-
-        Parameters
-        ----------
-        track : the places where the robot has been, the present one last: (x, y) in squares, map frame.
-
-        Returns
-        -------
-        Decision
-            The next command, or the verdict.
-
-        Raises
-        ------
-        BadInputError
-            The user's encodings are wrong.
-        """
+        """Return what to do after an impression."""
         self._activities.keeper.note(model)
         decision = self._decided(model, track)
         if decision.command is not None or decision.verdict == TaskVerdict.DONE:
@@ -138,10 +93,7 @@ class Decider:
         return self._blamed_on_constraints(decision, model, track)
 
     def _decided(self, model: WorldModel, track: Sequence[XY]) -> Decision:
-        """Return what to do after an impression, whatever constraints have to do with a verdict.
-
-        model, track : as for `decide`.
-        """
+        """Return what to do after an impression, whatever constraints have to do with a verdict."""
         kept_off = regions_kept_off(self.task, self.bound, model, ROBOT, lenient=self._lenient)
         cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
         self.rooms = self.place_names.named(rooms_of(model, self.rules), model)
@@ -176,10 +128,7 @@ class Decider:
         return replace(ended, why=self._done_in_words()) if ended.verdict == TaskVerdict.DONE else ended
 
     def _for_stage(self, turn: StageTurn) -> Decision:
-        """Return what is decided for a stage, as its goals are met: see planner.goals.references.
-
-        Where that comes to a verdict other than done, of two things the other one is moved.
-        """
+        """Return what is decided for a stage, as its goals are met: see planner.goals.references."""
         holds = self._activities.holds(turn.situation)
         stage, other = (as_meant(turn.stage, turn.situation, holds, other_way) for other_way in (False, True))
         first = self._turned.get(turn.stage)
@@ -214,12 +163,7 @@ class Decider:
         return why + "".join(f"; the wish {wish} {'holds' if wish in hold else 'is left'}" for wish in wished)
 
     def is_done_without_wishes(self, model: WorldModel, track: Sequence[XY]) -> bool:
-        """Return whether all goals hold as they are, so that nothing but wishes is left.
-
-        Parameters
-        ----------
-        model, track : as for `decide`.
-        """
+        """Return whether all goals hold as they are, so that nothing but wishes is left."""
         if not self.stages or not self.stages[-1].wishes:
             return False
         other = deepcopy(self)
@@ -228,13 +172,7 @@ class Decider:
             return other.decide(model, track).verdict == TaskVerdict.DONE
 
     def _blamed_on_constraints(self, decision: Decision, model: WorldModel, track: Sequence[XY]) -> Decision:
-        """Return a verdict with the constraints that leave no way, where there would be one without them.
-
-        A verdict that stands without the constraints stands with them. Else it is proved only when it stands for
-        regions that are taken as small as they surely are, too; if it does not, it is `limit`.
-
-        decision : a verdict, but for `done`. model, track : as for `decide`.
-        """
+        """Return a verdict with the constraints that leave no way, where there would be one without them."""
         ways = list(constraints(self.task))
         if not ways or any(str(goal) in decision.why for goal in ways):
             return decision
@@ -251,12 +189,7 @@ class Decider:
     def _asked(
         self, model: WorldModel, track: Sequence[XY], without: Sequence[Fact], lenient: bool = False
     ) -> Decision:
-        """Return what would be decided without some constraints, or with regions as small as they surely are.
-
-        model, track : as for `decide`.
-        without : the constraints that are left out.
-        lenient : whether regions count only where whole squares lie in them.
-        """
+        """Return what would be decided without some constraints, or with regions as small as they surely are."""
         other = deepcopy(self)
         other.task = replace(self.task, goals=tuple(goal for goal in self.task.goals if goal not in without))
         other._activities.keeper.task, other._lenient = other.task, lenient
@@ -264,10 +197,7 @@ class Decider:
             return other._decided(model, track)
 
     def _gave_up_meaning(self, stage: Stage, situation: Situation) -> bool:
-        """Note that a stage cannot be attained with what one parameter means, where it may mean something else as well.
-
-        Returns False when there is nothing else to try.
-        """
+        """Note that a stage cannot be attained with what one parameter means, where it may mean something else."""
         for parameter in (str(goal.args[0]) for goal in stage.carried):
             others = {(parameter, name) for name in situation.as_well.get(parameter, ())}
             meant = parameter, self.bound.get(parameter, "")
@@ -286,11 +216,7 @@ class Decider:
         return "; ".join([*named, *words])
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
-        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound.
-
-        A Reconciliation holds the binding (parameter -> name of a node), and the pairs that are doubtful or
-        contradicted.
-        """
+        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound."""
         wished = [goal for stage in self.stages for goal, _ in stage.wishes]
         goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
         carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT} - self._unmoved)

@@ -36,22 +36,13 @@ NO_ROUND = 5.0  # degrees that do not matter for the sense of rotation (conventi
 
 @dataclass(frozen=True)
 class Round:
-    """A way round a thing, which is counted anew when the thing was moved.
+    """A way round a thing, which is counted anew when the thing was moved."""
 
-    Attributes
-    ----------
-    begin : the index of the place of the track at which it begins: where the thing was let go last.
-    before : by how many degrees the track went round the thing before that, counter-clockwise positive.
-    """
-
-    begin: int = 0
-    before: float = 0.0
+    begin: int = 0  # the index of the place of the track at which it begins: where the thing was let go last
+    before: float = 0.0  # by how many degrees the track went round the thing before that, counter-clockwise positive
 
     def besides(self, track: Sequence[XY], node: Node, back: bool) -> float:
-        """Return by how many degrees the robot goes round the thing before this way round and on the shortest way back.
-
-        track : where the robot has been, (x, y) in squares, map frame. back : whether it goes back to where it woke.
-        """
+        """Return by how many degrees the robot goes round the thing before this way and on the shortest way back."""
         return self.before + (_turned(track[self.begin], track[0], node) if back else 0.0)
 
     def gone_on(self, track: Sequence[XY], node: Node, held: bool) -> "Round":
@@ -66,10 +57,7 @@ class OwnGoals:
     """Leads the robot itself where it shall be, and remembers what was begun for that."""
 
     def __init__(self, where: DestinationFunction) -> None:
-        """Make one that has begun nothing.
-
-        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
-        """
+        """Make one that has begun nothing."""
         self._where = where
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
@@ -82,15 +70,7 @@ class OwnGoals:
             self._round = self._round.gone_on(turn.track, node, turn.situation.model.held == node.name)
 
     def go(self, turn: StageTurn, intention: Intention) -> Decision:
-        """Return the next command towards where the robot shall be, or the verdict; done when it is there.
-
-        It goes through the doors of the task plan; by any way where these fail.
-
-        Parameters
-        ----------
-        turn : the stage, which has a goal for the robot itself, and what is believed.
-        intention : knows the doors of the plan.
-        """
+        """Return the next command towards where the robot shall be, or the verdict; done when it is there."""
         along = intention.along_plan(turn.situation)
         decision = self._go(turn.within(along))
         if decision.verdict in (None, TaskVerdict.DONE) or along.closed == turn.situation.closed:
@@ -98,12 +78,7 @@ class OwnGoals:
         return self._go(turn)
 
     def go_for_wish(self, turn: StageTurn, intention: Intention) -> Decision:
-        """Return the next command for a wish about the robot itself that the plan has; nothing for none.
-
-        Never a verdict: a wish that cannot be attained is dropped.
-
-        turn, intention : as for `go`; the goals of the stage hold.
-        """
+        """Return the next command for a wish about the robot itself that the plan has; nothing for none."""
         found = intention.own_wish()
         if found is None:
             return nothing_to_do("the task wishes nothing more of the robot itself")
@@ -117,15 +92,8 @@ class OwnGoals:
         return nothing_to_do(decision.why)
 
     def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
-        """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict; nothing for no doubt.
-
-        First comes what the last impression contradicts, then what the origin of a thing depends on (doors, walls).
-
-        Parameters
-        ----------
-        turn : the stage, and what is believed.
-        transporter : knows where things lay at first.
-        """
+        """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict."""
+        # Nothing for no doubt.
         situation, model = turn.situation, turn.situation.model
         doubt = contradiction = look_at_contradiction(situation)
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
@@ -187,10 +155,7 @@ class OwnGoals:
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 
     def _halt(self, where: Sequence[Destination], turn: StageTurn) -> Decision | None:
-        """Return what is done where the goals hold or are doubtful: looks, presses, or done; None for a way to go.
-
-        where : the squares on which each goal of the stage for the robot holds, in the order of these goals.
-        """
+        """Return what is done where the goals hold or are doubtful: looks, presses, or done; None for a way to go."""
         stage, situation = turn.stage, turn.situation
         there = all(not d.missing and robot_stands_on(d.squares, situation.model) for d in where)
         there = there or self._into_corner.is_pressing(stage, situation)
@@ -203,14 +168,7 @@ class OwnGoals:
         return _attained(f"{stage} holds for the robot", turn)
 
     def _go_round(self, name: str, turn: StageTurn) -> Decision:
-        """Return the next command on the way round an object; done when the robot has gone round it and is back.
-
-        The verdict `impossible` when no way leads round it. The sense of rotation, once begun, is kept while a route
-        leads that way.
-
-        name : of the object; the model knows it: else AssertionError.
-        turn : the stage, and what is believed; the first point of the track is where the round began.
-        """
+        """Return the next command on the way round an object; done when the robot has gone round it and is back."""
         stage, situation, track = turn.stage, turn.situation, turn.track[self._round.begin :]
         model, cost_maps = situation.model, situation.cost_maps
         node = model.object(name)
@@ -256,13 +214,7 @@ def _attained(why: str, turn: StageTurn) -> Decision:
 
 
 def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:
-    """Return a look at the objects of some goals before these are believed to hold; None when all are settled.
-
-    The next command of it, or the verdict `limit` when no way leads to where it is looked from. Objects are asked about
-    in the order of the goals; the first look that is left is returned.
-
-    goals : of the stage, for the robot itself. there : whether they seem to hold.
-    """
+    """Return a look at the objects of some goals before these are believed to hold; None when all are settled."""
     verifier, situation = turn.verifier, turn.situation
     nodes = [situation.object_of(str(goal.args[1])) for goal in goals]
     doubted = [n for n in nodes if n is not None and (verifier.is_unsettled(n) or (there and n.vague))]

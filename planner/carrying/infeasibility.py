@@ -16,36 +16,21 @@ ONE_NUMBER = 0.05  # squares: a missing width that is known this well is told as
 
 @dataclass(frozen=True, eq=False)
 class Refutation:
-    """A refutation by geometry: no way leads to any of the ends of an object.
+    """A refutation by geometry: no way leads to any of the ends of an object."""
 
-    The passages that are too narrow take time to find. They are worked out when a method asks for them.
-
-    Attributes
-    ----------
-    name : of the object.
-    plans : each refuted plan (squares, view frame) with the certainty level of the squares that it was asked for, in
-        the order of asking; at least one. Level 0 allows the surest squares only; the higher, the more squares it
-        allows.
-    model : what was believed.
-    """
-
-    name: str
+    name: str  # of the object
+    # Each refuted plan (squares, view frame) with the certainty level of the squares that it was asked for, in the
+    # order of asking; at least one. Level 0 allows the surest squares only; the higher, the more squares it allows.
     plans: tuple[tuple[int, CarryingPlan], ...]
-    model: WorldModel
+    model: WorldModel  # what was believed
 
     def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none.
-
-        It is the passage of the refuted plan that comes closest to leading somewhere (see `closest_refuted`).
-        """
+        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
         passage = closest_refuted(self.plans).passage
         return None if passage is None else passage.place
 
     def reason(self) -> str:
-        """Return why the object cannot be carried there, in words: a clause without full stop.
-
-        It names the passage that is too narrow, if any, with widths in squares and its place in the robot frame.
-        """
+        """Return why the object cannot be carried there, in words: a clause without full stop."""
         closest = closest_refuted(self.plans)
         passage = closest.passage
         if passage is None:
@@ -56,11 +41,8 @@ class Refutation:
         return f"the passage for {self.name}, {where}, {how_narrow(closest)}"
 
     def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words; "" for none.
-
-        Also "" when no passage is too narrow, or a wider one would not help. A clause such as "the passage at ...,
-        which is between 1.00 and 2.41 squares wide, is wide enough"; places in the robot frame.
-        """
+        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
+        # Also "" when no passage is too narrow, or a wider one would not help.
         closest = closest_refuted(self.plans)
         passage = closest.passage
         if passage is None or _is_blocked_elsewhere(closest):
@@ -72,17 +54,11 @@ class Refutation:
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """No way was found to carry an object; perhaps with a certificate that there is none.
+    """No way was found to carry an object; perhaps with a certificate that there is none."""
 
-    Attributes
-    ----------
-    proved : whether there is none, whatever the unseen squares hold.
-    message : why, in words, without full stop; "" where the refutation tells it.
-    refutation : what geometry refuted; None when nothing was proved, or when it needed no geometry.
-    """
-
-    proved: bool
-    message: str = ""
+    proved: bool  # whether there is none, whatever the unseen squares hold
+    message: str = ""  # why, in words, without full stop; "" where the refutation tells it
+    # What geometry refuted; None when nothing was proved, or when it needed no geometry
     refutation: Refutation | None = None
 
     def reason(self) -> str:
@@ -105,14 +81,7 @@ class Infeasibility:
 
 
 def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
-    """Return why no way was found for an object.
-
-    Proved when every plan was refuted, whatever the unseen squares hold, and the object surely lies where it is
-    believed to lie. Never proved when there are no plans.
-
-    plans : every plan that geometry did not find (squares, view frame), with the certainty level of the squares that it
-        was asked for (0 allows the fewest squares), in the order of asking.
-    """
+    """Return why no way was found for an object."""
     if not plans:
         return Infeasibility(False, f"it is not known where {node.name} could be carried")
     if any(plan.status != "impossible" for _, plan in plans):
@@ -124,10 +93,7 @@ def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldM
 
 
 def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> str:
-    """Return why an object may lie elsewhere than believed, in words; "" for no reason.
-
-    A clause without full stop, with the name of the object.
-    """
+    """Return why an object may lie elsewhere than believed, in words; "" for no reason."""
     _, last = plans[-1]
     if last.reason == "start":  # nothing lies in a wall
         return "it would overlap a wall"
@@ -147,22 +113,17 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
 
 
 def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
-    """Return the refuted plan that comes closest to leading somewhere.
-
-    It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
-    one of that level. The most permissive level is the greatest number. At least one plan is given.
-    """
+    """Return the refuted plan that comes closest to leading somewhere."""
+    # It is the last one of the most permissive level that a wider passage would make possible; if there is none, the
+    # last one of that level.
     most_permissive = max(level for level, _ in plans)
     asked = [plan for level, plan in reversed(plans) if level == most_permissive]
     return next((plan for plan in asked if plan.opens), asked[0])
 
 
 def how_narrow(plan: CarryingPlan) -> str:
-    """Return by how much the passage of a refuted plan is too narrow, in words, as far as that is proved.
-
-    A verb and its complements: "is too narrow by 0.51 squares", with the bounds of that number where they lie apart by
-    more than ONE_NUMBER. Where a wider one would not help, it need not be narrow: something else stops the body, too.
-    """
+    """Return by how much the passage of a refuted plan is too narrow, in words, as far as that is proved."""
+    # Where a wider one would not help, it need not be narrow: something else stops the body, too.
     if _is_blocked_elsewhere(plan):
         return "is not all that stops it: a wider one would not help"
     if not plan.opens:

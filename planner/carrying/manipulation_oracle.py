@@ -54,39 +54,24 @@ MAX_REMEMBERED = 512  # answers of geometry that are remembered; a bound on memo
 
 
 class OtherObjects(StrEnum):
-    """The treatment of other objects by a plan, as planner/asp/transport.lp knows it.
+    """The treatment of other objects by a plan, as planner/asp/transport.lp knows it."""
 
-    Attributes
-    ----------
-    CLEAR : lead round all of them.
-    ASIDE : lead as if those that may be moved were not there; they are then moved aside first.
-    """
-
-    CLEAR = "clear"
-    ASIDE = "aside"
+    CLEAR = "clear"  # lead round all of them
+    ASIDE = "aside"  # lead as if those that may be moved were not there; they are then moved aside first
 
 
 @dataclass(frozen=True)
 class ManipulationPlan:
-    """A manipulation plan: a way to carry an object that geometry verified.
+    """A manipulation plan: a way to carry an object that geometry verified."""
 
-    Attributes
-    ----------
-    plan : what geometry found, in squares, view frame: legs, each a walk, a grasp, pushes and turns, a release.
-    target : the name of the end that it leads to.
-    level : the certainty level of the squares that it needs, 0 the surest.
-    swept : (rows, columns) bool on the arrays of the view, the squares that the object, or the robot holding it,
-        crosses.
-    aside : the names of objects that must be moved out of the way first.
-    hopes : whether it is begun over squares that are only hoped to be free, without a look at them first.
-    """
-
+    # What geometry found, in squares, view frame: legs, each a walk, a grasp, pushes and turns, a release
     plan: CarryingPlan
-    target: str
-    level: int
+    target: str  # the name of the end that it leads to
+    level: int  # the certainty level of the squares that it needs, 0 the surest
+    # (rows, columns) bool on the arrays of the view, the squares that the object, or the robot holding it, crosses
     swept: Bools
-    aside: tuple[str, ...] = ()
-    hopes: bool = False
+    aside: tuple[str, ...] = ()  # the names of objects that must be moved out of the way first
+    hopes: bool = False  # whether it is begun over squares that are only hoped to be free, without a look at them first
 
     @property
     def askew(self) -> bool:
@@ -103,60 +88,33 @@ class ManipulationPlan:
 
 @dataclass(frozen=True)
 class Request:
-    """A question to the oracle: how an object can be carried to one of several ends.
+    """A question to the oracle: how an object can be carried to one of several ends."""
 
-    Attributes
-    ----------
-    node : the object; its outline is known.
-    ends : where it shall lie, by name, in squares, view frame.
-    avoid : grasps that failed, as (x, y) of the robot from the middle of the object, in squares along the axes of the
-        map.
-    last_target : the name of the end that was chosen last time; "" for none.
-    contacts : how often the object stood against something unexpectedly. Each time more room is wanted about it.
-    held : whether the robot holds it and may go on with that grasp.
-    turn_cost : how many commands a turn counts for.
-    """
-
-    node: Node
-    ends: Mapping[str, End]
+    node: Node  # the object; its outline is known
+    ends: Mapping[str, End]  # where it shall lie, by name, in squares, view frame
+    # Grasps that failed, as (x, y) of the robot from the middle of the object, in squares along the axes of the map
     avoid: tuple[XY, ...] = ()
-    last_target: str = ""
+    last_target: str = ""  # the name of the end that was chosen last time; "" for none
+    # How often the object stood against something unexpectedly. Each time more room is wanted about it.
     contacts: int = 0
-    held: bool = False
-    turn_cost: float = 1.0
+    held: bool = False  # whether the robot holds it and may go on with that grasp
+    turn_cost: float = 1.0  # how many commands a turn counts for
 
 
 class CarryingFloor(NamedTuple):
-    """The places of an object and the robot, and the squares that they may use, all in one frame.
+    """The places of an object and the robot, and the squares that they may use, all in one frame."""
 
-    It is the frame of the two arrays: x = column, y = row, (0, 0) the outer corner of square [0, 0].
-
-    Attributes
-    ----------
-    shape : the outline of the object, shapely Polygon, in squares.
-    utak : the place (x, y) of the robot, in squares.
-    free : (rows, columns) bool, squares for the object and the robot holding it.
-    walk : (rows, columns) bool, squares for the robot alone.
-    """
-
-    shape: Any
-    utak: XY
-    free: Bools
-    walk: Bools
+    shape: Any  # the outline of the object, shapely Polygon, in squares
+    utak: XY  # the place (x, y) of the robot, in squares
+    free: Bools  # (rows, columns) bool, squares for the object and the robot holding it
+    walk: Bools  # (rows, columns) bool, squares for the robot alone
 
 
 class ManipulationOracle:
-    """Finds manipulation plans, and remembers what geometry answered to the same question.
-
-    It asks geometry for one end, one certainty level of squares and one treatment of other objects at a time; an
-    encoding chooses the order.
-    """
+    """Finds manipulation plans, and remembers what geometry answered to the same question."""
 
     def __init__(self, pull: bool = True) -> None:
-        """Make an oracle that has been asked nothing.
-
-        pull : whether a held object may be pulled; False when it may only be pushed.
-        """
+        """Make an oracle that has been asked nothing."""
         self._pull = pull
         self._answers: dict[tuple[Any, ...], CarryingPlan] = {}
         self._found_nothing = False  # whether the last request had no plan
@@ -170,15 +128,7 @@ class ManipulationOracle:
     def find(
         self, request: Request, situation: Situation, hoped: EndsFunction = dict
     ) -> ManipulationPlan | Infeasibility:
-        """Return the plan that is chosen and verified, or why there is none.
-
-        At most MAX_ORACLE_ROUNDS options are tried: with more, the Infeasibility may be about a part of them.
-
-        Parameters
-        ----------
-        hoped : returns the ends (by name, squares, view frame) as they are if the floor goes on as it is hoped to; none
-            by default. It is called only when a plan was found that a bolder one may replace.
-        """
+        """Return the plan that is chosen and verified, or why there is none."""
         shape, utak = to_view_frame(request.node.polygon, situation), situation.model.place_on_view
         floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
         options = [
@@ -212,15 +162,7 @@ class ManipulationOracle:
     def _bolder(
         self, request: Request, found: ManipulationPlan, situation: Situation, hoped: EndsFunction
     ) -> ManipulationPlan:
-        """Return the plan that planner/asp/boldness.lp chooses: the one that was found, or a more optimistic one.
-
-        A plan over squares that are surely free is compared with optimistic ones if one of these may take fewer
-        commands. A plan over hoped squares is begun without a look where it does not leave the object askew. The facts
-        for the encoding, without full stops: `plan(number, commands)`, `hopes(number)`, `askew(number)`,
-        `aside(number)`, `short(number)`; number 0 is the plan that was found.
-
-        request : what the plan was asked for. hoped : returns the hoped ends, by name, in squares, view frame.
-        """
+        """Return the plan that planner/asp/boldness.lp chooses: the one that was found, or a more optimistic one."""
         if found.level == OPTIMISTIC_LEVEL:
             return replace(found, hopes=not found.askew)
         fewest = MIN_PLAN_COMMANDS if request.held else MIN_PLAN_COMMANDS + 1
@@ -240,14 +182,7 @@ class ManipulationOracle:
     def _optimistic_plans(
         self, request: Request, situation: Situation, hoped: EndsFunction
     ) -> Iterator[ManipulationPlan]:
-        """Yield a plan for each end over squares that are hoped to be free, also beyond all that was seen.
-
-        Yields nothing where nothing is hoped for. While the frame is open, plans end within what was seen: beyond it no
-        impression tells well where a motion was stopped. The plans are in the view frame and of UNSEEN_LEVEL, in the
-        order of the names of the ends.
-
-        hoped : returns the hoped ends, by name, in squares, view frame; they replace the ends of the same name.
-        """
+        """Yield a plan for each end over squares that are hoped to be free, also beyond all that was seen."""
         model, node = situation.model, request.node
         own, walk = (np.pad(mask, UNSEEN_MARGIN) for mask in (model.mask(node.patch), situation.cost_maps.free(0)))
         free = (optimistic_floor(situation) | own) & ~forbidden_squares(node, situation, UNSEEN_MARGIN)
@@ -265,16 +200,7 @@ class ManipulationOracle:
                 yield replace(_manipulation_plan(shifted, shape, name, UNSEEN_LEVEL, situation, node), hopes=True)
 
     def _ask_geometry(self, request: Request, end: End, floor: CarryingFloor, model: WorldModel) -> CarryingPlan:
-        """Return what geometry says of one end; from memory where the same was asked before.
-
-        The plan is in squares, in the frame of `end` and `floor`, which is one: the view frame, or that with the margin
-        for unseen squares. Its status is found, impossible or limit (neither found nor refuted).
-
-        request : what is to be carried; its own ends are not read.
-        end : where the object shall lie.
-        floor : where object and robot are, and the squares that they may use.
-        model : what is believed; it tells from which squares the object cannot be grasped for sure.
-        """
+        """Return what geometry says of one end; from memory where the same was asked before."""
         shape, utak, free, walk = floor
         held, turn, contacts = request.held, request.turn_cost, request.contacts
         avoid = request.avoid if held else (*request.avoid, *sorted(_ambiguous_grasps(request.node, model)))
@@ -285,11 +211,8 @@ class ManipulationOracle:
             margin = min(INEXACT_MARGIN * (contacts + (not is_grid_aligned(shape))), MAX_MARGIN)
 
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:
-                """Return what geometry says for some free squares and walls.
-
-                free : (rows, columns) bool. walls : shapely geometry in squares, same frame; None for all that is not
-                    free.
-                """
+                """Return what geometry says for some free squares and walls."""
+                # None for all that is not free.
                 return plan_carrying(
                     shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
                 )
@@ -300,12 +223,7 @@ class ManipulationOracle:
 
 
 def _may_use_other_ways(node: Node, situation: Situation) -> bool:
-    """Return whether what is forbidden here proves nothing.
-
-    Either it is open which of several doors is forbidden to the object, or a door is forbidden to the robot alone: then
-    the object may pass where the robot may not. So it is with regions that plans keep away from, to be sure. False when
-    nothing is forbidden.
-    """
+    """Return whether what is forbidden here proves nothing."""
     own = situation.forbidden(node.name)
     kept_off = not situation.lenient and any(situation.region_kept_off(actor).any() for actor in (ROBOT, node.name))
     several = len(situation.rooms.doors) > 1
@@ -313,11 +231,7 @@ def _may_use_other_ways(node: Node, situation: Situation) -> bool:
 
 
 def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
-    """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches.
-
-    Walls are thickened by WALL_CLEARANCE squares except near the object; squares beside blocked ones no longer count as
-    free. All in squares, in the frame of `free`.
-    """
+    """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches."""
     rows, columns = free.shape
     walls = shapely.box(0, 0, columns, rows).difference(mask_to_polygon(free))
     near_shape = shape.buffer(2 * WALL_CLEARANCE, join_style="mitre")
@@ -326,11 +240,9 @@ def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
 
 
 def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
-    """Yield the grasps, as (x, y) from the object's middle, from which no compass direction surely names its squares.
-
-    In squares along the axes of the map, from the middle of the outline to the centre of the square where the robot
-    would stand. In a frame that is turned these are squares at its corners.
-    """
+    """Yield the grasps, as (x, y) from the object's middle, from which no compass point surely names its squares."""
+    # In squares along the axes of the map, from the middle of the outline to the centre of the square where the robot
+    # would stand.
     covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in ADJACENT_OFFSETS} - covered
     for x, y in about:
@@ -339,24 +251,14 @@ def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
 
 
 def _floor_options(situation: Situation) -> list[tuple[int, OtherObjects]]:
-    """Return each certainty level that is tried, with other objects where they are and, if there are any, without.
-
-    The surest level first, and for each level CLEAR before ASIDE.
-    """
+    """Return each certainty level that is tried, with other objects where they are and, if there are any, without."""
     several = len(situation.model.objects) > 1
     choices = (OtherObjects.CLEAR, OtherObjects.ASIDE) if several else (OtherObjects.CLEAR,)
     return [(level, others) for level in TRIED_LEVELS for others in choices]
 
 
 def usable_squares(node: Node, situation: Situation, level: int, others: OtherObjects) -> Bools:
-    """Return the squares that may be used to carry an object, (rows, columns) bool on the arrays of the view.
-
-    These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
-    objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
-    where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
-    what may be an object, or its hidden part, in what seems to be wall. Necks of forbidden doors and forbidden regions
-    are never among them.
-    """
+    """Return the squares that may be used to carry an object, (rows, columns) bool on the arrays of the view."""
     model = situation.model
     own = model.mask(node.patch)
     free = situation.cost_maps.free(level) | own
@@ -378,10 +280,7 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
 
 
 def _least_way(end: End, shape: Any) -> float:
-    """Return the straight distance from a shape to an end, in squares: a lower bound of the way.
-
-    For an At end it is the length of its translation; for a Roomy end 0.
-    """
+    """Return the straight distance from a shape to an end, in squares: a lower bound of the way."""
     if isinstance(end, At):
         return math.hypot(end.pose.x, end.pose.y)
     if isinstance(end, InCorner | Between):
@@ -390,13 +289,7 @@ def _least_way(end: End, shape: Any) -> float:
 
 
 def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None:
-    """Return the end, the level and the treatment of other objects that are tried next; None when none is left.
-
-    The end is given by its name, the level as 0 (the surest) and up.
-
-    facts : strings without full stop, for planner/asp/transport.lp: `option(end, level, others, cost)` with the cost in
-        tenths of squares, `last(end)`, `refuted(end, level, others)`, `undecided(end, level, others)`, `hopeless`.
-    """
+    """Return the end, the level and the treatment of other objects that are tried next; None when none is left."""
     answer = solve([PLANNER_ASP / "transport.lp"], facts)
     if not answer:
         return None
@@ -407,15 +300,7 @@ def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None
 def _manipulation_plan(
     plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situation, node: Node
 ) -> ManipulationPlan:
-    """Return the manipulation plan of what geometry found for the end `name` over squares of a level.
-
-    Objects whose squares it crosses, where these are not free at that level, are to be moved aside first.
-
-    plan : what geometry found, in squares, view frame.
-    shape : the outline of the object where it lies, shapely Polygon, in squares, view frame.
-    name : of the end.
-    level : the certainty level of the squares, 0 the surest.
-    """
+    """Return the manipulation plan of what geometry found for the end `name` over squares of a level."""
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
     # What seems to stand where the object itself lies is not in its way, nor is what may not be there at all.
@@ -426,15 +311,7 @@ def _manipulation_plan(
 
 
 def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Bools:
-    """Return the mask of squares that an object, and the robot holding it, cross on a plan, (rows, columns) bool.
-
-    The squares where the object lies at first are among them. Motions are sampled every SWEEP_STRIDE squares.
-
-    Parameters
-    ----------
-    shape : the outline of the object where it lies before the plan, shapely Polygon, in squares, view frame.
-    size : (rows, columns) of the mask.
-    """
+    """Return the mask of squares that an object, and the robot holding it, cross on a plan, (rows, columns) bool."""
     rows, columns = size
     mask: Bools = squares(shape, columns, rows)
     for leg in plan.legs:

@@ -24,14 +24,7 @@ NOTHING_LEFT = "nothing is left to look at"  # a fact that proofs name: all floo
 
 
 def open_fact_against(decision: Decision, situation: Situation, scope: FeelingScope = ALL_WALLS) -> Decision:
-    """Return the verdict `possible_if` with an open fact that would overturn a verdict; nothing when none is open.
-
-    The fact is added to the reason.
-
-    Parameters
-    ----------
-    decision : the verdict `impossible`; its `unless` may name the open fact already, "" asks for the nearest one here.
-    """
+    """Return the verdict `possible_if` with an open fact that would overturn a verdict; nothing when none is open."""
     near = decision.near or situation.model.place_on_view
     fact = decision.unless or nearest_open_fact(situation, near, scope)
     if not fact:
@@ -40,32 +33,15 @@ def open_fact_against(decision: Decision, situation: Situation, scope: FeelingSc
 
 
 def proof_if_not_found(model: WorldModel, immovable: bool = False) -> tuple[str, ...]:
-    """Return what proves, when everything was looked at, that no object fits a parameter of the task; () for nothing.
-
-    In words, a clause each. Where impressions contradicted each other, the object may have
-    been seen and lost: then nothing is proved.
-
-    Parameters
-    ----------
-    immovable : an object fits, but did not move when it was pushed; by default none fits. While the angle of the map
-        frame is open, the robot may have pushed at another object: then nothing is proved, too.
-    """
+    """Return what proves, when everything was looked at, that no object fits a parameter of the task."""
+    # () for nothing.
     proved = model.view.sure and orientation_is_settled(model) if immovable else not model.shaken
     fact = "what fits did not move when it was pushed" if immovable else "nothing that was seen fits"
     return (fact, NOTHING_LEFT) if proved else ()
 
 
 def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_WALLS) -> str:
-    """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
-
-    A wall that was never felt comes first, then floor that goes on unseen, then an opening that fills no whole square
-    (where the robot itself must get on), then an object that was never moved. A
-    clause without full stop, places in the robot frame.
-
-    near : (x, y) in squares, view frame.
-    scope : which walls matter for the task. Where no wall between two parts of the floor does, objects all around which
-        the floor is reached do not either, unless the task speaks of objects.
-    """
+    """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none."""
     model, reached = situation.model, situation.cost_maps.floor
     walls = walls_in_question(model, reached, scope).values()
     wall = _nearest_square(np.any(list(walls), axis=0), near)
@@ -85,18 +61,7 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
 
 
 def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
-    """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case.
-
-    A clause without full stop, with `where` in it.
-
-    A wall lies anywhere in the squares in which it was seen. So each side may stand back by up to a square along each
-    axis.
-
-    width : of the passage as it is believed, in squares.
-    missing : how much wider it must be, in squares.
-    sides : a point (x, y) on each of its two walls, in squares, in any frame along the axes of the map.
-    where : the place of the passage, in words.
-    """
+    """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case."""
     across = np.abs(np.subtract(*sides)) / max(math.dist(*sides), 1e-9)
     most = width + 2 * float(across.sum())
     if width + missing >= most:
@@ -105,10 +70,8 @@ def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: st
 
 
 def _nearest_square(mask: Bools, near: XY) -> XY | None:
-    """Return the middle (x, y) of the marked square nearest to a place, the first of several; None for an empty mask.
-
-    In squares, in the frame of the mask, (rows, columns) bool, as is the place `near`.
-    """
+    """Return the middle (x, y) of the marked square nearest to a place, the first of several."""
+    # None for an empty mask.
     rows, columns = np.nonzero(mask)
     if not len(rows):
         return None

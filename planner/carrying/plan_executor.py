@@ -52,18 +52,7 @@ Advice = Act | Go | See | Infeasibility
 
 
 class PlanExecutor:
-    """Carries objects, one plan after the other.
-
-    The outline of an object that is given is known. Ends say where it shall lie, by name, in squares, view frame.
-
-    Attributes
-    ----------
-    pull : whether a held object may be pulled.
-    failed : the grasps by which an object did not move. Only this class changes it.
-    missed : how many plans ended, with the object in hand, before they led to their end, since `forget_misses`.
-    unwanted : by the name of an object, grasps that plans for it do not use, as (x, y) of the robot from its middle as
-        it lay when they were stated, in squares along the axes of the map, and by how many degrees it had been turned.
-    """
+    """Carries objects, one plan after the other."""
 
     def __init__(
         self,
@@ -72,15 +61,7 @@ class PlanExecutor:
         plan: RemainingPlan | None = None,
         operations: PlanOperations | None = None,
     ) -> None:
-        """Make an executor.
-
-        Parameters
-        ----------
-        pull : whether a held object may be pulled; False when it may only be pushed.
-        oracle : what finds plans; a new one if None. It belongs to this executor from now on.
-        plan : a plan that is under way already, map frame; None for none.
-        operations : the functions on remaining plans; the real ones if None.
-        """
+        """Make an executor."""
         self.pull = pull
         self.failed = FailedGrasps()
         self.missed = 0
@@ -103,15 +84,7 @@ class PlanExecutor:
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
-        """Return what to do to carry an object to one of several ends, or why nothing can be done.
-
-        The plan under way is followed while it holds; else the failure is answered, or another plan is made. The
-        command of an Act counts as given: the plan goes on behind it at the next call.
-
-        Parameters
-        ----------
-        hoped : returns the ends, likewise, as they are if the floor goes on as it is hoped to; none by default.
-        """
+        """Return what to do to carry an object to one of several ends, or why nothing can be done."""
         before, self._plan = self._plan, None
         plan = None
         if before is not None and before.name != node.name and before.target in ends:
@@ -135,10 +108,7 @@ class PlanExecutor:
             plan, self._plan = None, None
 
     def infeasibility(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
-        """Return why an object cannot be carried to any of several ends; None when a plan is found.
-
-        The plan under way is not touched.
-        """
+        """Return why an object cannot be carried to any of several ends; None when a plan is found."""
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
         return found if isinstance(found, Infeasibility) else None
 
@@ -147,21 +117,14 @@ class PlanExecutor:
         self.missed = 0
 
     def release_looping(self, model: WorldModel) -> Act:
-        """Return the release of a held object that was carried in a loop, and mark its grasp as failed.
-
-        The plan under way is dropped. An object must be held: else AssertionError.
-        """
+        """Return the release of a held object that was carried in a loop, and mark its grasp as failed."""
         assert model.held is not None
         self._plan = None
         self.failed.record(model.object(model.held), model)
         return Act(Release(), f"{model.held} is released, because it was carried round in circles")
 
     def continue_plan(self, node: Node, situation: Situation) -> Act | None:
-        """Return the next command of the plan under way for the held object; None when there is no such plan.
-
-        Returns None, too, when the plan no longer holds, or carries another object. Wherever it leads, it is not asked
-        whether that is still wanted.
-        """
+        """Return the next command of the plan under way for the held object; None when there is no such plan."""
         if self._plan is None or self._plan.name != node.name or situation.model.held != node.name:
             return None
         plan = self._operations.revalidate(self._plan, None, situation)
@@ -171,16 +134,7 @@ class PlanExecutor:
         return advice if isinstance(advice, Act) else None
 
     def take_along(self, node: Node, squares: SquareIndices, fetch: bool, situation: Situation) -> Act | Go | None:
-        """Return what takes an object along to where the robot wants to look; None when it had better walk there.
-
-        A held object is taken along by one straight push, if that leads there.
-
-        Parameters
-        ----------
-        squares : from which the robot wants to look.
-        fetch : whether an object that is not held, or that no straight push takes there, is brought near by one grasp
-            and one or two pushes; if not, None is returned for it.
-        """
+        """Return what takes an object along to where the robot wants to look; None when it had better walk there."""
         model = situation.model
         if node.stuck or self._plans >= MAX_PLANS or model.held not in (None, node.name):
             return None
@@ -190,12 +144,9 @@ class PlanExecutor:
         return self._bring_near(node, squares, situation) if fetch else None
 
     def detour(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | None:
-        """Return the push with the held object to one of some squares, from which one more leads to the plan's end.
-
-        It may take the place of the command that was advised last. Returns None when there is no such push, or when
-        what is left of the plan is not one leg of pushes with the object in hand. It is the pair of pushes with the
-        least total length. The plan under way is not changed here.
-        """
+        """Return the push with the held object to one of some squares, from which one more leads to the plan's end."""
+        # Returns None when there is no such push, or when what is left of the plan is not one leg of pushes with the
+        # object in hand.
         plan = self._plan
         if not self.pull or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
             return None
@@ -208,11 +159,7 @@ class PlanExecutor:
         return None if push is None else unplanned_act(push, f"{node.name} is taken along", situation.model)
 
     def lead_out(self, node: Node, situation: Situation) -> Act | None:
-        """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed.
-
-        Returns None, and marks nothing, where no push does that, where pulling is not allowed, when the last motion did
-        not move the object, and after MAX_PLANS plans. It is the shortest such push by whole squares.
-        """
+        """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed."""
         push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
         if push is None:
             return None
@@ -230,10 +177,8 @@ class PlanExecutor:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
     def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | Go | None:
-        """Return the next command to bring an object near to some squares by one grasp and one or two pushes.
-
-        Returns None when that cannot be done over squares that are surely free.
-        """
+        """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
+        # Returns None when that cannot be done over squares that are surely free.
         plan, self._viewpoint_plan = self._viewpoint_plan, None
         end = region_near(squares, situation)
         if end is None:
@@ -254,13 +199,10 @@ class PlanExecutor:
     # -- when a plan fails -----------------------------------------------------------------------
 
     def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel) -> Advice | None:
-        """Return what to do when a motion did not move the held object: draw it back once, then release it.
-
-        An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
-        degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. Returns
-        None when nothing failed, or when nothing is held: then a grasp that the plan, which no longer holds, relied on
-        is marked as failed.
-        """
+        """Return what to do when a motion did not move the held object: draw it back once, then release it."""
+        # An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
+        # degree off, for it is pushed against it as well. Returns None when nothing failed, or when nothing is held:
+        # then a grasp that the plan, which no longer holds, relied on is marked as failed.
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
             self.failed.record(model.object(plan.name), model)
@@ -283,11 +225,7 @@ class PlanExecutor:
     def _make_plan(
         self, request: Request, situation: Situation, hoped: EndsFunction
     ) -> RemainingPlan | See | Infeasibility:
-        """Return a new plan (map frame); or what must be seen before it is begun, or why there is none.
-
-        Where an obstacle must be moved aside first, the plan is for that obstacle. Failed grasps are tried again when
-        nothing else is found and nothing is proved.
-        """
+        """Return a new plan (map frame); or what must be seen before it is begun, or why there is none."""
         node, asked = request.node, request
         found = self._oracle.find(request, situation, hoped)
         if isinstance(found, Infeasibility) and situation.model.held == node.name and not request.held:
@@ -319,12 +257,7 @@ class PlanExecutor:
     def _clear_way(
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
-        """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not.
-
-        First of all it is felt whether the obstacle is an object, where that is not certain. Of several obstacles that
-        one is moved which takes fewest commands, of equal ones the first of the model's objects; only a plan that needs
-        nothing else moved counts.
-        """
+        """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
             return touch
@@ -338,10 +271,7 @@ class PlanExecutor:
         return Infeasibility(False, f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside")
 
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
-        """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress.
-
-        last : the name of the end of the plan before; "" for none.
-        """
+        """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress."""
         stalled = self._went_on is not None and math.dist(self._went_on, model.place) < NO_PROGRESS
         held = model.held == node.name and not stalled
         contacts = self._contacts.get(node.name, 0)
@@ -353,12 +283,7 @@ class PlanExecutor:
     def _plan_aside(
         self, other: Node, found: ManipulationPlan, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | None:
-        """Return an object and a plan that carries it off the squares that another plan needs; None for no such.
-
-        None, too, when the other plan does not name it as an obstacle, or when it could only go once a further object
-        is moved. The object is `other` itself; it is pulled out of a wall where that may hide a part of it, else
-        carried to any surely free place off those squares.
-        """
+        """Return an object and a plan that carries it off the squares that another plan needs; None for no such."""
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
@@ -370,12 +295,7 @@ class PlanExecutor:
     # -- following a plan ------------------------------------------------------------------------
 
     def _next_step(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
-        """Return the next step of a plan; None when the object is not felt where it should be grasped.
-
-        The plan, without that step, becomes the plan under way.
-
-        ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
-        """
+        """Return the next step of a plan; None when the object is not felt where it should be grasped."""
         self._plan = plan
         leg, model = plan.legs[0], situation.model
         if not plan.grasped:
@@ -393,11 +313,9 @@ class PlanExecutor:
         return Act(command_of(motion, model), f"{plan.name} is carried to its place ({plan.target})")
 
     def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
-        """Return the step to where the object is grasped, or the grasp; from the present place if that does as well.
-
-        A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could be
-        the object: it lies otherwise than believed.
-        """
+        """Return the step to where the object is grasped, or the grasp; from the present place if that does as well."""
+        # A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could
+        # be the object: it lies otherwise than believed.
         model, leg = situation.model, plan.legs[0]
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)
         begun = plan if is_at(model, leg.place) else None

@@ -21,14 +21,9 @@ DETOUR_ROOM = 2  # squares beside the way of a long plan within which more room 
 
 
 def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> See | None:
-    """Return what of the way of a plan must be seen before it is begun; None when no look tells more of it.
-
-    All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release the
-    object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the present
-    grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the room for a
-    shorter one, and may be free, is looked at too. Looked at are all unsure squares of the way together, from floor
-    from which any of them is seen best.
-    """
+    """Return what of the way of a plan must be seen before it is begun; None when no look tells more of it."""
+    # To release the object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on
+    # with the present grasp is trusted, and so is one over hoped squares.
     model, is_long = situation.model, found.plan.commands > LONG_PLAN
     if found.hopes or (found.plan.goes_on and not is_long):
         return None
@@ -47,12 +42,8 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
 
 
 def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
-    """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none.
-
-    Also None when there is no floor beside it from which the robot did not feel it yet. Then it is felt how far an
-    obstacle goes that touches a wall or another object. The first is meant in the order of the model's objects; only
-    obstacles that are objects with less than CERTAIN_OBJECT percent count.
-    """
+    """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none."""
+    # Also None when there is no floor beside it from which the robot did not feel it yet.
     things = [thing for thing in situation.model.objects if thing.name in found.aside]
     unsure = (touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT)
     ends = (rim_viewpoint(situation.cost_maps, thing) for thing in things)
@@ -60,22 +51,15 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
 
 
 def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
-    """Return a look at the first obstacle of a plan of which squares are open; None when there is none.
-
-    Also None when the robot looked at each of them from everywhere. Open squares are not determined yet. The first is
-    meant in the order of `found.aside`.
-    """
+    """Return a look at the first obstacle of a plan of which squares are open; None when there is none."""
+    # Also None when the robot looked at each of them from everywhere.
     named = (situation.model.object(name) for name in found.aside)
     unclear = (other for other in named if other is not None and other.open)
     return _first_see(inspection(situation.cost_maps, other, chance=1.0, to=TO_TAKE) for other in unclear)
 
 
 def turn_cost(model: WorldModel) -> float:
-    """Return how many commands a turn of a held object counts for: 1.0 or more.
-
-    A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
-    place of the robot within its square is open.
-    """
+    """Return how many commands a turn of a held object counts for: 1.0 or more."""
     if orientation_is_uncertain(model):
         return TURN_COST_OPEN_FRAME
     return TURN_COST_OPEN_PLACE if max(model.leeway) > PLACE_SLACK else 1.0

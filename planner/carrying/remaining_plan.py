@@ -33,35 +33,21 @@ MIN_PREFIX = 4.0  # squares that a push must lead to be begun before all of its 
 
 @dataclass(frozen=True)
 class RemainingPlan:
-    """The remaining part of a manipulation plan, in squares, map frame.
+    """The remaining part of a manipulation plan, in squares, map frame."""
 
-    Attributes
-    ----------
-    name : of the object that is carried.
-    target : the name of the end that it leads to.
-    polygon : the outline (shapely Polygon) that the object must have now for the plan to hold.
-    legs : what is left to do; the first one is under way. A leg is a walk, a grasp, pushes and turns, and a release.
-    needed : the squares that must stay free.
-    level : the certainty level at which they were free, 0 the surest.
-    place : (x, y) where the robot must stand now for the plan to hold; None while it walks.
-    grasped : whether the robot should hold the object.
-    """
-
-    name: str
-    target: str
-    polygon: Any
+    name: str  # of the object that is carried
+    target: str  # the name of the end that it leads to
+    polygon: Any  # the outline (shapely Polygon) that the object must have now for the plan to hold
+    # What is left to do; the first one is under way. A leg is a walk, a grasp, pushes and turns, and a release.
     legs: tuple[Leg, ...]
-    needed: Patch
-    level: int
-    place: XY | None = None
-    grasped: bool = False
+    needed: Patch  # the squares that must stay free
+    level: int  # the certainty level at which they were free, 0 the surest
+    place: XY | None = None  # (x, y) where the robot must stand now for the plan to hold; None while it walks
+    grasped: bool = False  # whether the robot should hold the object
 
     @property
     def ended(self) -> bool:
-        """Return whether nothing is left but to release the object, or nothing at all.
-
-        The release is done only when the hand is needed.
-        """
+        """Return whether nothing is left but to release the object, or nothing at all."""
         return not self.legs or (self.grasped and len(self.legs) == 1 and not self.legs[0].motions)
 
     @property
@@ -82,14 +68,9 @@ def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> Remain
 
 
 def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: Situation) -> RemainingPlan | None:
-    """Return a plan, with the object where it is now believed to lie, if the plan still holds; else None.
-
-    It holds while robot and object are where it says, the squares that it needs are believed free, and it leads to one
-    of the ends. Where the object lies otherwise than it says, the motions are verified anew from there. A plan with
-    nothing left to do does not hold.
-
-    ends : where it must lead, by name, in squares, view frame; None when it only clears the way for another object.
-    """
+    """Return a plan, with the object where it is now believed to lie, if the plan still holds; else None."""
+    # Where the object lies otherwise than it says, the motions are verified anew from there.
+    # None when it only clears the way for another object.
     model = situation.model
     node = model.object(plan.name)
     if node is None or node.polygon is None or plan.ended:
@@ -115,12 +96,9 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
 
 
 def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> RemainingPlan | None:
-    """Return a plan whose first grasp is made where the robot stands, not in the middle of that square.
-
-    Returns None when it would not lead to one of the ends so.
-
-    ends : where it must lead, by name, in squares, view frame; None is returned for {}.
-    """
+    """Return a plan whose first grasp is made where the robot stands, not in the middle of that square."""
+    # Returns None when it would not lead to one of the ends so.
+    # None is returned for {}.
     model = situation.model
     node = model.object(plan.name)
     assert node is not None
@@ -132,13 +110,10 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
 
 
 def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
-    """Return as much of a plan as leads over squares known to be free; None when that brings the object hardly on.
-
-    It must bring the robot at least MIN_PREFIX squares on. From its end the robot sees what it could otherwise only see
-    by a walk there and back. Plans with turns or several grasps have no such part, for these depend on what is not
-    seen. It is the pushes of the first leg, in order, up to the first that is not free over safe squares; of that one
-    the longest free part, if any. Its level and its end's name stay as they were.
-    """
+    """Return as much of a plan as leads over squares known to be free; None when that brings the object hardly on."""
+    # From its end the robot sees what it could otherwise only see by a walk there and back. Plans with turns or several
+    # grasps have no such part, for these depend on what is not seen. It is the pushes of the first leg, in order, up to
+    # the first that is not free over safe squares; of that one the longest free part, if any.
     first, *others = found.plan.legs
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
     if others or len(pushes) < len(first.motions):
@@ -164,19 +139,15 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
 
 @dataclass(frozen=True)
 class PlanOperations:
-    """The functions on remaining plans that the executor uses; tests pass their own.
+    """The functions on remaining plans that the executor uses; tests pass their own."""
 
-    Attributes
-    ----------
-    begin_plan : makes a remaining plan of a manipulation plan.
-    revalidate : returns a plan if it still holds, else None.
-    start_from_robot : returns a plan with its first grasp where the robot stands, or None.
-    safe_prefix : returns the part of a plan over squares known to be free, or None.
-    """
-
+    # Makes a remaining plan of a manipulation plan
     begin_plan: Callable[[ManipulationPlan, Node, WorldModel], RemainingPlan] = begin_plan
+    # Returns a plan if it still holds, else None
     revalidate: Callable[[RemainingPlan, Mapping[str, End] | None, Situation], RemainingPlan | None] = revalidate
+    # Returns a plan with its first grasp where the robot stands, or None
     start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = start_from_robot
+    # Returns the part of a plan over squares known to be free, or None
     safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = safe_prefix
 
 
@@ -186,12 +157,7 @@ def is_at(model: WorldModel, place: XY) -> bool:
 
 
 def grasp_direction(plan: RemainingPlan, model: WorldModel) -> str | None:
-    """Return the compass direction in which the first leg of a plan grasps its object; None where it is not felt.
-
-    One of the eight of the robot frame, such as "northeast", as seen from where the robot stands. It is the planned
-    direction, or another one in which the object is felt, in the order of the frame's directions. While touches are not
-    known, the planned direction counts.
-    """
+    """Return the compass direction in which the first leg of a plan grasps its object; None where it is not felt."""
     node, leg = model.object(plan.name), plan.legs[0]
     assert node is not None
     x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
@@ -211,13 +177,8 @@ def grasp_direction(plan: RemainingPlan, model: WorldModel) -> str | None:
 
 
 def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) -> Translate | None:
-    """Return the longest part of a push, rounded to whole squares, that is free; None for none.
-
-    Parts are tried from the longest on, in steps of one square, so it is at least about one square long. In squares,
-    view frame.
-
-    shape, place : the outline of the object and the place of the robot before the push, which is not free to its end.
-    """
+    """Return the longest part of a push, rounded to whole squares, that is free; None for none."""
+    # Parts are tried from the longest on, in steps of one square, so it is at least about one square long.
     steps = math.floor(math.hypot(push.dx, push.dy))
     parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
     pushes = (Translate(float(dx), float(dy)) for dx, dy in parts)
@@ -225,20 +186,14 @@ def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) 
 
 
 def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bools:
-    """Return the squares over which a plan made before may still lead, (rows, columns) bool on the arrays of the view.
-
-    These are the free ones of the plan's certainty level, or of KEPT_LEVEL if that is more permissive, and the object's
-    own, without the necks of forbidden doors and without forbidden regions.
-    """
+    """Return the squares that a plan made before may still cross, (rows, columns) bool on the arrays of the view."""
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
     return free & ~forbidden_squares(node, situation)
 
 
 def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situation) -> Any:
-    """Return the outline after a plan from where the object really lies, view frame; None if it is blocked.
-
-    A shapely Polygon, in squares. Also None when a grasp would reach nothing. free : the squares that may be used.
-    """
+    """Return the outline after a plan from where the object really lies, view frame; None if it is blocked."""
+    # Also None when a grasp would reach nothing.
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs
     legs = [first if plan.place is None else replace(first, place=plan.place), *others]

@@ -14,13 +14,7 @@ from planner.subgoal_kind import SubgoalKind
 
 
 def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str = "") -> Decision | None:
-    """Return the next command to bring an object to an end, or to find out what it is; None when there is none.
-
-    name : the name of the end.
-    end : where it shall lie, in squares, view frame.
-    turn : the stage, what is believed, and the tools.
-    purpose : words before the reason of a command for the object itself; "" for none.
-    """
+    """Return the next command to bring an object to an end, or to find out what it is; None when there is none."""
     if node.confidence < CERTAIN_OBJECT:
         touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(turn.situation.cost_maps, node))
         return turn.look_if_reached(touch)
@@ -43,14 +37,8 @@ def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str 
 
 
 def carry_on(node: Node, turn: StageTurn, supposed: Situation) -> Decision | None:
-    """Return the next command of the plan under way for an object in hand; None when there is none, or it would loop.
-
-    Parameters
-    ----------
-    node : the object.
-    turn : the stage, what is believed, and the tools.
-    supposed : the situation for which the plan was made: as believed, or with what is supposed of the object besides.
-    """
+    """Return the next command of the plan under way for an object in hand."""
+    # None when there is none, or it would loop.
     act = turn.executor.continue_plan(node, supposed)
     if act is None or turn.closes_loop(act.command):
         return None

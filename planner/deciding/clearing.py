@@ -22,11 +22,7 @@ ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the ro
 
 
 class ObstacleClearer:
-    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile.
-
-    An obstacle is an object that blocks the robot's way to some part of the floor. What goals speak of stays where it
-    is.
-    """
+    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile."""
 
     def __init__(self) -> None:
         """Make a clearer that is moving nothing."""
@@ -42,14 +38,8 @@ class ObstacleClearer:
         return (*feeling, "make_way") if self._moving else feeling
 
     def clear_on(self, turn: StageTurn) -> Decision:
-        """Return the next command for the obstacle that is being moved; nothing when it blocks no longer.
-
-        Nothing, too, when its command would close a loop: then it is no longer being moved.
-
-        Parameters
-        ----------
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command for the obstacle that is being moved; nothing when it blocks no longer."""
+        # Nothing, too, when its command would close a loop: then it is no longer being moved.
         node, held = turn.situation.model.object(self._moving), turn.situation.model.held
         if node is not None and held is None:
             instead = self._move_first(self._movable(turn.situation), turn, node.name)
@@ -66,27 +56,15 @@ class ObstacleClearer:
         return carried
 
     def feel_on(self, turn: StageTurn) -> Decision:
-        """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left.
-
-        Parameters
-        ----------
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left."""
         found = self._pull(turn)
         felt = None if found is not None else feel_walls(turn)
         self._feeling = felt is not None
         return found or felt or nothing_to_do("nothing is left to feel")
 
     def clear(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to move aside what blocks the robot's way; nothing when no such object can be moved.
-
-        A ring about the robot may have an opening that fills no whole square: it is walked against first.
-
-        Parameters
-        ----------
-        goals : what they speak of stays where it is.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to move aside what blocks the robot's way."""
+        # Nothing when no such object can be moved.
         self._let_stay(goals, turn.situation)
         ringed = is_ringed(turn.situation.model, turn.situation.cost_maps.floor)
         instead = self._passages.next(turn) if ringed else None
@@ -94,24 +72,13 @@ class ObstacleClearer:
         return instead or nothing_to_do("nothing that blocks the robot's way can be moved aside")
 
     def pull(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to move what may go on in a wall, as far as that was seen; nothing for no such thing.
-
-        Parameters
-        ----------
-        goals, turn : as for `clear`.
-        """
+        """Return the next command to move what may go on in a wall, as far as that was seen."""
+        # Nothing for no such thing.
         self._let_stay(goals, turn.situation)
         return self._pull(turn) or nothing_to_do("nothing that may go on in a wall can be moved")
 
     def feel(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to feel walls that may be things; nothing when none is left that can be reached.
-
-        Where the robot must get on, it then walks against walls that may have an opening.
-
-        Parameters
-        ----------
-        goals, turn : as for `clear`.
-        """
+        """Return the next command to feel walls that may be things; nothing when none is left that can be reached."""
         self._let_stay(goals, turn.situation)
         felt = feel_walls(turn)
         self._feeling |= felt is not None
@@ -120,12 +87,7 @@ class ObstacleClearer:
         return felt or nothing_to_do("nothing is left to feel")
 
     def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to move away what stands before walls that were never felt; nothing for none.
-
-        Parameters
-        ----------
-        goals, turn : as for `clear`.
-        """
+        """Return the next command to move away what stands before walls that were never felt; nothing for none."""
         self._let_stay(goals, turn.situation)
         hidden = before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn.stage, turn.situation))
         instead = self._move_first_of(hidden, turn)
@@ -149,29 +111,21 @@ class ObstacleClearer:
         return self._move_first_of(hidden_in_walls(self._movable(turn.situation), turn.situation, parting), turn)
 
     def _movable(self, situation: Situation) -> list[Node]:
-        """Return the objects that may be moved aside, in the order of the model; [] for none.
-
-        Only those that are objects with at least POSSIBLE_OBJECT percent, not known to be immovable, and need not stay.
-        """
+        """Return the objects that may be moved aside, in the order of the model; [] for none."""
+        # Only those that are objects with at least POSSIBLE_OBJECT percent, not known to be immovable, and need not
+        # stay.
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in self._stays]
 
     def _move_first(self, things: Sequence[Node], turn: StageTurn, name: str = "") -> Decision | None:
-        """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
-
-        things : the objects in question.
-        turn : the stage, what is believed, and the tools.
-        name : only the object of that name is moved; "" for any of `things`.
-        """
+        """Return the next command to move aside the first object that blocks, and remember which it is."""
+        # None for none.
         parting = feeling_scope(turn.stage, turn.situation).parting
         found = obstacles(things, turn.situation, walls_to_feel(turn.stage, turn.situation), parting)
         return self._move_first_of((one for one in found if name in ("", one.node.name)), turn)
 
     def _move_first_of(self, found: Iterable[Obstacle], turn: StageTurn) -> Decision | None:
-        """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
-
-        found : the obstacles, in the order in which they are tried. turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to move aside the first obstacle that can be, and remember it; None for none."""
         for one in found:
             instead = _move_aside(one.node, one.aside, turn.within(one.situation))
             if instead is not None:
@@ -181,10 +135,7 @@ class ObstacleClearer:
 
 
 def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision | None:
-    """Return the next command to move an object aside, or to find out what it is; None when there is none.
-
-    aside : where it shall lie, in squares, view frame. turn : the stage, what is believed, and the tools.
-    """
+    """Return the next command to move an object aside, or to find out what it is; None when there is none."""
     rim = feel_rim(node, turn)
     if rim is not None:
         return rim

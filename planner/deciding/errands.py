@@ -21,37 +21,17 @@ MAX_FAILURES = 3  # errands that fail one after the other within one decision; a
 
 
 class ErrandRunner:
-    """Carries out the errands of the task plan.
-
-    Attributes
-    ----------
-    intention : owns the plan.
-    forbidden : the steps that users' rules forbade where something was open and none was left to settle it, in words.
-    """
+    """Carries out the errands of the task plan."""
 
     def __init__(self, transporter: Transporter, where: DestinationFunction, pull: bool = True) -> None:
-        """Make a runner without a plan.
-
-        Parameters
-        ----------
-        transporter : brings objects where goals hold.
-        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
-        pull : whether a held object may be pulled.
-        """
+        """Make a runner without a plan."""
         self._transporter = transporter
         self.intention = Intention(WhereGoalsHold(transporter.place, transporter.origin_of, where), pull)
         self.forbidden = ""
 
     def next(self, turn: StageTurn) -> Decision:
-        """Return the next command for the task plan; nothing where it has no errand for an object next.
-
-        The plan is made anew first where it no longer holds. The verdict `impossible`, for good, where users' rules
-        leave no plan. Where an errand cannot be done, the plan is made anew without it.
-
-        Parameters
-        ----------
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command for the task plan; nothing where it has no errand for an object next."""
+        # The verdict `impossible`, for good, where users' rules leave no plan.
         self.forbidden = ""
         turn = self._updated(turn)
         if self.is_shut_out(turn.situation):
@@ -73,14 +53,8 @@ class ErrandRunner:
         return nothing_to_do("the next step is the robot's own" if planned else "the task plan has no errand")
 
     def settle(self, turn: StageTurn, given: Sequence[str]) -> str:
-        """Return the first step of the task plan where something is open, as planner/asp/task writes it; "" for none.
-
-        Parameters
-        ----------
-        turn : the stage, what is believed, and the tools.
-        given : what is not known, what activities came to, and what the robot is stuck with, as facts without full
-            stops.
-        """
+        """Return the first step of the task plan where something is open, as planner/asp/task writes it."""
+        # "" for none.
         step, self.forbidden = self.intention.settle(turn.stage, turn.situation, given)
         return step
 
@@ -92,18 +66,13 @@ class ErrandRunner:
         return f"{rules} at {' and '.join(blamed)} leave{'s' * (len(blamed) == 1)} no plan" if blamed else ""
 
     def is_shut_out(self, situation: Situation) -> bool:
-        """Return whether users' rules leave no plan, and not because they close doors: no other way can be looked for.
-
-        False while it is open where exactly a goal holds, and where rules speak of the world as it is believed now.
-        """
+        """Return whether users' rules leave no plan, and not because they close doors."""
+        # No other way can be looked for.
         lasting = not situation.closed and not self.intention.is_open
         return bool(self.intention.blamed and lasting and not world_facts_named("task", situation.rules))
 
     def blamed_so_far(self, situation: Situation) -> str:
-        """Return the users' rules because of which there is no plan as far as is known, in words; "" for none.
-
-        "" where a plan is under way, too, and where the rules close doors: then no way through these is taken.
-        """
+        """Return the users' rules because of which there is no plan as far as is known, in words; "" for none."""
         return self.blamed if self.intention.plan is None and not situation.closed else ""
 
     def _updated(self, turn: StageTurn) -> StageTurn:

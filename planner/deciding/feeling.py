@@ -40,12 +40,7 @@ FEELING_REASON = "what seems to be wall may be a thing that can be moved, so it 
 
 
 def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
-    """Return which walls matter for a stage that cannot be attained otherwise.
-
-    Walls between two parts of the floor that is reached matter where an object must find its way, where the robot must
-    go round something, and where a door is forbidden. Where the robot shall be at an object to which no way leads, only
-    walls matter that may lead there.
-    """
+    """Return which walls matter for a stage that cannot be attained otherwise."""
     forbidden = situation.forbidden(ROBOT)
     track = any(goal.name in TRACK_GOALS for goal in stage.own)
     parting = bool(stage.carried) or track or bool(forbidden)
@@ -77,20 +72,14 @@ def _floor_this_side(doors: Sequence[Door], situation: Situation) -> Bools:
 
 
 def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
-    """Return the walls that were never felt and may be things that could help a stage, reachable to be felt or not.
-
-    (rows, columns) bool on the arrays of the view.
-    """
+    """Return the walls that were never felt and may be things that could help a stage, reachable to be felt or not."""
     walls = walls_in_question(situation.model, situation.cost_maps.floor, feeling_scope(stage, situation))
     mask: Bools = np.any(list(walls.values()), axis=0)
     return mask
 
 
 def feel_walls(turn: StageTurn) -> Decision | None:
-    """Return the next command to feel walls that may be things; None when none is left that can be reached.
-
-    turn : the stage, what is believed, and the tools.
-    """
+    """Return the next command to feel walls that may be things; None when none is left that can be reached."""
     cost_maps = turn.situation.cost_maps
     return turn.look_if_reached(
         choose_halt(feeling_places(cost_maps, feeling_scope(turn.stage, turn.situation)), cost_maps)
@@ -98,18 +87,12 @@ def feel_walls(turn: StageTurn) -> Decision | None:
 
 
 def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
-    """Return the next command to feel things all round; None when none can be reached to be felt.
-
-    rims : for each the floor from which it is felt. turn : the stage, what is believed, and the tools.
-    """
+    """Return the next command to feel things all round; None when none can be reached to be felt."""
     return with_command(turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims])) if rims else None
 
 
 def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
-    """Return the next command to feel how far an object goes on along the wall in which it stands; None when known.
-
-    turn : the stage, what is believed, and the tools.
-    """
+    """Return the next command to feel how far an object goes on along the wall in which it stands; None when known."""
     if node.moved or node.colour is None:
         return None
     cost_maps = turn.situation.cost_maps
@@ -119,16 +102,7 @@ def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
 
 
 def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | None:
-    """Choose the square at which walls are felt next, by planner/asp/feel.lp; None when nothing is left to feel.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view),
-    the reason in words, its chance in percent, and a price in squares of way.
-
-    The facts for the encoding, each a string without a full stop, for each place, numbered from 0: `halt(number, walk,
-    moves)` with the way in tenths of squares, and `tells(number, kind, doorway or square, count)`.
-
-    places : the squares to choose from; only the nearest of each kind of wall are offered to the encoding.
-    """
+    """Choose the square at which walls are felt next, by planner/asp/feel.lp; None when nothing is left to feel."""
     if not places:
         return None
     halts = np.array([place.square for place in places])
@@ -162,12 +136,7 @@ class Passages:
         self._tried: set[WallLine] = set()
 
     def next(self, turn: StageTurn) -> Decision | None:
-        """Return the next command to walk through wall to floor beyond it; None when no line is left.
-
-        Through the thing, too, where one alone lies all round the robot.
-
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to walk through wall to floor beyond it; None when no line is left."""
         situation = turn.situation
         model, far = situation.model, situation.cost_maps.distances[0].ravel()
         walks = passages(situation.cost_maps, things=not is_ringed(model, situation.cost_maps.floor))

@@ -29,34 +29,20 @@ SHAKEN_DOUBT = 0.5  # squares by which the robot may be elsewhere after impressi
 
 @dataclass(frozen=True)
 class ThingTrack:
-    """The track of a thing, in squares, robot frame.
+    """The track of a thing, in squares, robot frame."""
 
-    Attributes
-    ----------
-    outline : its newest outline, a shapely Polygon.
-    turned : by how many degrees it was turned until then.
-    robot : where the robot stood then.
-    swept : what it has covered since it was first moved; None while it was not.
-    middles : where its middle was, oldest first.
-    """
-
-    outline: Any
-    turned: float
-    robot: XY
-    swept: Any = None
-    middles: tuple[XY, ...] = ()
+    outline: Any  # its newest outline, a shapely Polygon
+    turned: float  # by how many degrees it was turned until then
+    robot: XY  # where the robot stood then
+    swept: Any = None  # what it has covered since it was first moved; None while it was not
+    middles: tuple[XY, ...] = ()  # where its middle was, oldest first
 
 
 @dataclass
 class ConstraintKeeper:
-    """Remembers where things were, and tells whether the constraints on the way were kept.
+    """Remembers where things were, and tells whether the constraints on the way were kept."""
 
-    Attributes
-    ----------
-    task : whose constraints are meant.
-    """
-
-    task: Task
+    task: Task  # whose constraints are meant
     _tracks: dict[str, ThingTrack] = field(default_factory=dict)
 
     def note(self, model: WorldModel) -> None:
@@ -90,12 +76,7 @@ class ConstraintKeeper:
         return nothing_to_do("no constraint is known to be broken from the beginning")
 
     def guarded(self, decision: Decision, situation: Situation) -> Decision:
-        """Return a decision; the verdict `limit` instead of a command that surely leads into a forbidden region.
-
-        Parameters
-        ----------
-        decision : what was decided.
-        """
+        """Return a decision; the verdict `limit` instead of a command that surely leads into a forbidden region."""
         for name, fact in avoidances(self.task):
             way = _way_of(decision.command, name, situation)
             if way is not None and way.intersects(region_of(fact)):

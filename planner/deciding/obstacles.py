@@ -27,45 +27,21 @@ TRIAL_PUSH = 1.0  # squares by which a thing is pushed into a wall to see whethe
 
 
 class Obstacle(NamedTuple):
-    """An object that blocks the robot's way to some part of the floor.
+    """An object that blocks the robot's way to some part of the floor."""
 
-    Attributes
-    ----------
-    node : the object.
-    aside : where it shall lie so that the way is free, or so that all of it is seen; in squares, view frame.
-    situation : what is believed, with the object as it is in `node`.
-    supposed : how it is supposed to go on in a wall; None for an object that is as it was seen.
-    """
-
-    node: Node
-    aside: End
-    situation: Situation
+    node: Node  # the object
+    aside: End  # where it shall lie so that the way is free, or so that all of it is seen; in squares, view frame
+    situation: Situation  # what is believed, with the object as it is in `node`
+    # How it is supposed to go on in a wall; None for an object that is as it was seen
     supposed: Supposition | None = None
 
 
 def obstacles(
     things: Sequence[Node], situation: Situation, walls: Bools | None = None, parting: bool = False
 ) -> Iterator[Obstacle]:
-    """Yield those of some objects that block the way to floor, known or unseen, that is reached without them.
-
-    The one with the shortest way first. Each is asked about alone. If none blocks alone, the first of several that
-    stand behind each other is yielded; else objects that block if they go on in what seems to be wall.
-    Nothing is yielded when no object blocks.
-
-    An Obstacle holds the object, and an end: where it shall lie so that the way is free.
-
-    The end is Inside: polygons, in squares, view frame, of its own squares and surely free ones off the route; first
-    off one that goes on a while behind the object, then off the shortest one. For an object that may go on in a wall it
-    is the latter, for the object as it lies if it does. Then it is At: a translation (x, y) in squares from where it
-    lies, out of the wall, and after that further into it.
-
-    Parameters
-    ----------
-    things : the objects in question.
-    walls : (rows, columns) bool on the arrays of the view, walls that are to be felt: a nook beside one is worth the
-        way, too. None for none.
-    parting : whether an object that may fill a gap in a wall blocks, too, where the floor behind it is reached already.
-    """
+    """Yield those of some objects that block the way to floor, known or unseen, that is reached without them."""
+    # An Obstacle holds the object, and an end: where it shall lie so that the way is free.
+    # For an object that may go on in a wall it is the latter, for the object as it lies if it does.
     model = situation.model
     under = [model.mask(thing.patch) for thing in things]
     found = [
@@ -86,15 +62,7 @@ def obstacles(
 def _routes_opened(
     under: Bools, situation: Situation, walls: Bools | None = None, further: int = 0
 ) -> list[PlannedRoute]:
-    """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook.
-
-    At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level). It
-    leads to the nearest such floor, or `further` squares on, over the shortest way by the grid of squares.
-
-    under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
-    walls : (rows, columns) bool on the arrays of the view: a nook beside one of these squares counts; None for none.
-    further : how many squares further than the nearest such floor the route leads, if there is floor so far.
-    """
+    """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook."""
     cost_maps = situation.cost_maps
     without = CostMaps(situation.model, under, cost_maps.kept_off)
     beyond = (
@@ -119,14 +87,9 @@ def _off_route(thing: Node, way: PlannedRoute, situation: Situation) -> Inside:
 
 
 def before_walls(things: Sequence[Node], situation: Situation, walls: Bools) -> Iterator[Obstacle]:
-    """Yield those of some objects that stand right before walls that are to be felt, so that they cannot be.
-
-    An Obstacle holds the object, and an end: where it shall lie so that these walls can be felt, in squares, view
-    frame: on its own squares and surely free ones that touch none of these walls.
-
-    things : the objects in question.
-    walls : (rows, columns) bool on the arrays of the view, the walls that are to be felt.
-    """
+    """Yield those of some objects that stand right before walls that are to be felt, so that they cannot be."""
+    # An Obstacle holds the object, and an end: where it shall lie so that these walls can be felt, in squares, view
+    # frame: on its own squares and surely free ones that touch none of these walls.
     for thing in things:
         mask = situation.model.mask(thing.patch)
         hidden = with_edge_neighbours(mask) & walls
@@ -136,28 +99,18 @@ def before_walls(things: Sequence[Node], situation: Situation, walls: Bools) -> 
 
 
 def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
-    """Return the first of some objects that a route over their squares comes to.
-
-    Raises StopIteration when the route crosses none of them.
-
-    way : the route, from the robot on, on the arrays of the view. things : the objects.
-    """
+    """Return the first of some objects that a route over their squares comes to."""
+    # Raises StopIteration when the route crosses none of them.
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
 
 
 def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool) -> Iterator[Obstacle]:
-    """Yield those of some objects that block the way if they go on in what seems to be wall.
-
-    For each side on which that is so there are up to three Obstacles, the object as it lies then, with their ends: off
-    the route that opens; drawn out of the wall by one square more than it goes on, or as far as there is room, so that
-    all of it is seen; and pushed TRIAL_PUSH squares further in. An object that did not move the last time is drawn out
-    first: something may stand behind it.
-
-    An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
-
-    things : the objects in question. parting : whether a way counts, too, that opens to floor that is reached already.
-    """
+    """Yield those of some objects that block the way if they go on in what seems to be wall."""
+    # For each side on which that is so there are up to three Obstacles, the object as it lies then, with their ends:
+    # off the route that opens; drawn out of the wall by one square more than it goes on, or as far as there is room, so
+    # that all of it is seen; and pushed TRIAL_PUSH squares further in.
+    # An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
 
     def opens(under: Bools) -> bool:
         """Return whether a way opens when some squares are free, (rows, columns) bool on the arrays of the view."""
@@ -175,10 +128,7 @@ def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool)
 
 
 def _joins_floors(under: Bools, situation: Situation) -> bool:
-    """Return whether some squares have floor on two sides that do not hang together around them.
-
-    under : (rows, columns) bool on the arrays of the view.
-    """
+    """Return whether some squares have floor on two sides that do not hang together around them."""
     near = situation.model.space & dilate(under, NOOK_RANGE) & ~under
     beside = components(near).labels[with_edge_neighbours(under) & near]
     return len(np.unique(beside)) > 1

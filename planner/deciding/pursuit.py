@@ -35,14 +35,7 @@ class Pursuer:
         contacts: Callable[[Situation], Sequence[Subgoal]] = contact_subgoals,
         circles: LoopGuard | None = None,
     ) -> None:
-        """Make a pursuer that has no route yet.
-
-        Parameters
-        ----------
-        paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
-        contacts : returns the subgoals from which something is felt before the robot gives up.
-        circles : detects loops; a new guard if None. It belongs to this pursuer from now on.
-        """
+        """Make a pursuer that has no route yet."""
         self._paths = paths
         self._contacts = contacts
         self._kept = StickyRoute()
@@ -50,12 +43,7 @@ class Pursuer:
         self._feeling = False  # whether the robot is about to feel what may stand against a wall
 
     def closes_loop(self, model: WorldModel, command: Command) -> bool:
-        """Record a command that is about to be given, and return whether it was given before in the same state.
-
-        The state is the robot's place, what it holds, and what is known (planner.navigation.loop_guard).
-
-        command : in the robot's own frame.
-        """
+        """Record a command that is about to be given, and return whether it was given before in the same state."""
         return self._circles.noticed(model, command)
 
     def pursue(
@@ -67,20 +55,8 @@ class Pursuer:
         proof: Sequence[str] = (),
         along: Callable[[Subgoal], Decision | None] | None = None,
     ) -> Decision:
-        """Return the next command towards the best of some subgoals, or the verdict when none can be reached.
-
-        A held object that is not taken along is released first. A subgoal that leads in a loop becomes dearer until
-        another one is chosen.
-
-        A Decision with a command may be the release, or what `along` returns.
-
-        subgoals : what is worth doing, with squares on the arrays of the view.
-        missing : returns what is missing, in words. It is called only for a verdict, for it may take time.
-        proof : what proves that the stage cannot be attained when none can be reached, in words; () for nothing: then
-            the verdict is `limit`, as it is when one was dropped for leading in circles.
-        along : returns how an object is taken along to a subgoal, or None when it had better stay; None when no object
-            is to be taken along.
-        """
+        """Return the next command towards the best of some subgoals, or the verdict when none can be reached."""
+        # None when no object is to be taken along.
         model = situation.model
         fewest = FewestMoves(situation.cost_maps) if stage.carried else None
         round_doors = without_priced_doors(situation)
@@ -104,39 +80,23 @@ class Pursuer:
             self._circles.tire(to_map_squares(subgoal.squares, model))
 
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
-
-        look : the squares to look from, on the arrays of the view; None when nothing is to be looked at.
-        """
+        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
+        # None when nothing is to be looked at.
         if look is None:
             return None
         return self.pursue([look], stage, situation, lambda: look.what)
 
     def go(self, go: Go, stage: Stage, situation: Situation) -> Decision:
-        """Return the next command to a square where an object is grasped, so that the last move halts at its place.
-
-        The verdict `limit` when no way leads there, or after loops.
-
-        Parameters
-        ----------
-        go : the square, the place in it at which to halt, (x, y) in squares, map frame, and the reason in words.
-        """
+        """Return the next command to a square where an object is grasped, so that the last move halts at its place."""
         subgoal = Subgoal(SubgoalKind.ATTAIN, go.square, go.why)
         walk = self.pursue([subgoal], stage, situation, lambda: "no way leads there")
         return replace(walk, command=halt_exactly_at(walk.command, go.place, situation.model))
 
     def prepare(self, advice: Advice, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the next command to where an object is grasped, or to see what must be seen first.
-
-        Returns None when the advice is neither (an Act or an Infeasibility), or cannot be followed: never a verdict.
-
-        For a Go the way to the square, so that the last move halts at its place; for a See the way to one of its
-        squares.
-
-        Parameters
-        ----------
-        advice : what the executor advises; an Act or Infeasibility gives None.
-        """
+        """Return the next command to where an object is grasped, or to see what must be seen first."""
+        # Returns None when the advice is neither (an Act or an Infeasibility), or cannot be followed: never a verdict.
+        # For a Go the way to the square, so that the last move halts at its place; for a See the way to one of its
+        # squares.
         walk: Decision | None = None
         if isinstance(advice, Go):
             walk = self.go(advice, stage, situation)
@@ -145,15 +105,7 @@ class Pursuer:
         return with_command(walk)
 
     def feel_before_verdict(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
-        """Return what is decided; before a verdict, feel what may be an object against a wall, or part of a wall.
-
-        A way to feel something is gone on with: on the way something else may come to be worth a look.
-
-        Parameters
-        ----------
-        ask : returns what is decided otherwise, a command or a verdict. It is called only while nothing is on the way
-            to be felt, or when nothing is left to feel.
-        """
+        """Return what is decided; before a verdict, feel what may be an object against a wall, or part of a wall."""
         decision = None if self._feeling else ask()
         if decision is None or decision.verdict:
             subgoals = self._contacts(situation)
@@ -163,13 +115,8 @@ class Pursuer:
         return decision
 
     def _walk(self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
-        """Return the next command towards a subgoal, and remember the route.
-
-        The verdict `impossible` when every route leads through a forbidden door.
-
-        subgoal : one of its squares can be reached at some certainty level: else AssertionError.
-        fewest : finds routes of few moves; None for short routes.
-        """
+        """Return the next command towards a subgoal, and remember the route."""
+        # None for short routes.
         model, cost_maps = situation.model, situation.cost_maps
         reached = cost_maps.nearest(subgoal.squares)
         assert reached is not None
@@ -189,36 +136,17 @@ class Pursuer:
         return Decision(move, f"{subgoal.what}; {stage}")
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
-        """Return what is left of the present route, if it leads to a subgoal and through no forbidden door; else None.
-
-        On the arrays of the view.
-
-        level : the certainty level at which the subgoal is reached, 0 the surest.
-        """
+        """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""
+        # Else None.
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose_route([rest], situation) if rest is not None and situation.shut(ROBOT) else rest
 
     def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
-        """Remember the present route.
-
-        Parameters
-        ----------
-        route : on the arrays of the view.
-        model : the world model with that view.
-        towards : the flat indices (row * columns + column) of the subgoal's squares on the arrays of the view; None for
-            no subgoal.
-        """
+        """Remember the present route."""
         self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
     def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
-        """Return the route that planner/asp/routes.lp chooses; None when all lead through forbidden doors.
-
-        None, too, when no route is offered.
-
-        Parameters
-        ----------
-        offered : the routes that there are, on the arrays of the view, possibly none.
-        """
+        """Return the route that planner/asp/routes.lp chooses; None when all lead through forbidden doors."""
         if not offered:
             return None
         before = frozenset(self._kept.path(situation.model))
@@ -234,13 +162,7 @@ def without_priced_doors(situation: Situation) -> Situation:
 
 
 def _priced(subgoal: Subgoal, situation: Situation, within: Situation) -> tuple[Subgoal, Situation]:
-    """Return a subgoal with what its way costs by the prices of doors, and the situation in which that way leads.
-
-    Of several priced doors the least price counts. Where the way round them costs no more, only the squares are left to
-    which it leads.
-
-    within : the situation in which the priced doors are shut.
-    """
+    """Return a subgoal with what its way costs by the prices of doors, and the situation in which that way leads."""
     through = None if within is situation else situation.cost_maps.nearest(subgoal.squares)
     if through is None:
         return subgoal, situation
@@ -254,11 +176,7 @@ def _priced(subgoal: Subgoal, situation: Situation, within: Situation) -> tuple[
 
 
 def _given_up(stage: Stage, missing: str, proof: Sequence[str], in_circles: bool) -> Decision:
-    """Return the verdict when no subgoal can be reached.
-
-    missing : what is missing, in words.
-    proof : what proves it, in words; () for nothing. in_circles : some were dropped for leading in circles.
-    """
+    """Return the verdict when no subgoal can be reached."""
     end = "the robot goes round in circles" if in_circles else "nothing is left to look at"
     why = f"{stage} cannot be attained: {missing}, and {end}"
     return impossible(why, *proof) if proof and not in_circles else Decision(None, why, TaskVerdict.LIMIT)

@@ -31,34 +31,17 @@ MIN_OBJECT_CHANCE = 3  # percent, of every object that is not known to be anothe
 
 
 class Candidate(NamedTuple):
-    """Something seen that may be what is looked for.
+    """Something seen that may be what is looked for."""
 
-    Attributes
-    ----------
-    squares : the flat indices (row * columns + column) on the arrays of the view of the squares where it lies, (n,).
-    subgoal : a look at it; its chance is the percent of belief that it is what is looked for.
-    """
-
+    # The flat indices (row * columns + column) on the arrays of the view of the squares where it lies, (n,)
     squares: SquareIndices
-    subgoal: Subgoal
+    subgoal: Subgoal  # a look at it; its chance is the percent of belief that it is what is looked for
 
 
 def subgoals_towards(
     where: Sequence[Destination], situation: Situation, reconciled: Reconciliation, to: Approach = TO_TAKE
 ) -> list[Subgoal]:
-    """Return the subgoals that may lead to where all of some goals hold.
-
-    When all destinations are known, the only subgoal is to go there: to the squares where all goals hold, possibly
-    none. Else they are looks, first those where just the missing thing may be; and these alone, with objects that may
-    be it, while one of them can surely be reached. Destinations that name what is missing come first, in their order;
-    then objects that may be the missing one, then likely places, then looks at the unseen. Each keeps its own chance.
-
-    Parameters
-    ----------
-    where : the destination of each goal, at least one.
-    reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
-    to : what the robot goes up to a missing object for; to take it by default.
-    """
+    """Return the subgoals that may lead to where all of some goals hold."""
     cost_maps = situation.cost_maps
     missing = [d for d in where if d.missing]
     if not missing:
@@ -77,30 +60,19 @@ def subgoals_towards(
 
 
 def contact_subgoals(situation: Situation) -> list[Subgoal]:
-    """Return where to feel what may be an object against a wall; if there is no such, what may be part of a wall.
-
-    Subgoals of kind INSPECT; [] when nothing is left to feel.
-    """
+    """Return where to feel what may be an object against a wall; if there is no such, what may be part of a wall."""
     return wall_contacts(situation) or island_contacts(situation)
 
 
 def wall_contacts(situation: Situation) -> list[Subgoal]:
-    """Return, for each part of a wall that may be an object standing against it, where it can be felt.
-
-    Subgoals of kind INSPECT; parts that were felt, or have no floor beside them, are left out. In the order in which
-    the model lists the parts, each with the chance 100.
-    """
+    """Return, for each part of a wall that may be an object standing against it, where it can be felt."""
     looks = [frontiers.wall_touch_viewpoint(situation.cost_maps, mask) for mask in situation.model.protruding]
     return [Subgoal(SubgoalKind.INSPECT, *look) for look in looks if len(look.squares)]
 
 
 def island_contacts(situation: Situation) -> list[Subgoal]:
-    """Return, for each free-standing object that would make more doors if it were wall, where it can be felt.
-
-    Subgoals of kind INSPECT; objects that were touched or moved, or have no floor beside them, are left out. In the
-    order of the model's objects, each with the chance 100. Wall would join what bounds the floor, and so make necks of
-    the floor beside it.
-    """
+    """Return, for each free-standing object that would make more doors if it were wall, where it can be felt."""
+    # Wall would join what bounds the floor, and so make necks of the floor beside it.
     model = situation.model
     subgoals = []
     for node in model.objects:
@@ -113,12 +85,7 @@ def island_contacts(situation: Situation) -> list[Subgoal]:
 
 
 def chance_of_none(candidates: Sequence[Candidate]) -> float:
-    """Return the probability, 0 to 1, that none of some candidates is what is looked for; 1 for no candidates.
-
-    Of candidates that share squares, only the first counts.
-
-    candidates : in order; each with the squares where it lies and its chance in percent.
-    """
+    """Return the probability, 0 to 1, that none of some candidates is what is looked for; 1 for no candidates."""
     none, counted = 1.0, np.zeros(0, np.int64)
     for squares, subgoal in candidates:
         if not np.isin(squares, counted).any():
@@ -130,18 +97,7 @@ def chance_of_none(candidates: Sequence[Candidate]) -> float:
 def _doubtful_objects(
     situation: Situation, reconciled: Reconciliation, likely: Floats | None, to: Approach
 ) -> list[Candidate]:
-    """Return the objects of the world model that may be what is looked for, each with a look at it or a touch of it.
-
-    A Candidate holds the squares where something lies (flat indices (row * columns + column) on the arrays of the
-    view), and a Subgoal: a look at it, with its chance in percent.
-
-    In the order of the doubtful pairs; only for parameters that match nothing seen so far; without objects that have no
-    such squares.
-
-    reconciled : what the parameters of the task mean; its doubtful pairs name the objects.
-    likely : the probability (rows, columns) that a square belongs to the shape looked for; None when no shape is told.
-    to : what the robot goes up to an object for: to take it (and towards which corner) or only to be beside it.
-    """
+    """Return the objects of the world model that may be what is looked for, each with a look at it or a touch of it."""
     cost_maps, model = situation.cost_maps, situation.model
     found = []
     for x, name in reconciled.doubtful:
@@ -158,12 +114,7 @@ def _doubtful_objects(
 
 
 def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
-    """Return the probability, 0 to 1, that an object is what is looked for, by map completions.
-
-    Where the object may go on unseen, the chance by the number of its seen squares counts if that is greater.
-
-    likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
-    """
+    """Return the probability, 0 to 1, that an object is what is looked for, by map completions."""
     mask = model.mask(node.patch)
     shown = float(likely[mask].max())
     cut = (dilate(mask, 1) & ~model.view.seen).any()
@@ -171,28 +122,13 @@ def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
 
 
 def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Candidate]:
-    """Return the places where map completions show what is looked for, with looks at them; [] for none.
-
-    A Candidate holds the squares where something lies (flat indices (row * columns + column) on the arrays of the
-    view), and a Subgoal: a look at it, with its chance in percent.
-
-    likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
-    to : what the robot goes there for: to take something (and towards which corner) or only to be beside it.
-    """
+    """Return the places where map completions show what is looked for, with looks at them; [] for none."""
     seen = sightings(cost_maps, likely, "what is looked for may be there", to)
     return [Candidate(squares, Subgoal(SubgoalKind.INSPECT, *look)) for squares, look in seen]
 
 
 def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
-    """Return looks at what was never seen, and at what bounds the floor.
-
-    Frontiers (EXPLORE) come first, then unsettled boundaries of the floor (SETTLE), then passages to floor that is seen
-    and not reached (PASS), each with a chance in percent.
-
-    unseen : the probability, 0 to 1, that what is missing was not seen yet.
-    to : what the robot goes up to it for. A robot that is to carry it counts moves: it looks from where most comes into
-        sight, and must set out once more to what it sees from there.
-    """
+    """Return looks at what was never seen, and at what bounds the floor."""
     views = (
         frontiers.best_views(cost_maps, one_move_squares(cost_maps, SubgoalKind.EXPLORE), MOVE_COST, SQUARE_COST)
         if to.take
@@ -219,13 +155,7 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
 
 
 def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | None:
-    """Return the probability that a square belongs to the shape looked for; None when no shape is told.
-
-    (rows, columns) on the arrays of the view, 0 to 1, by map completions (sampled maps that agree with all counts). Of
-    the shapes that the task tells of parameters that match nothing seen so far, it is the first by name.
-
-    reconciled : names the parameters that match nothing seen so far.
-    """
+    """Return the probability that a square belongs to the shape looked for; None when no shape is told."""
     wanted = sorted(
         str(claim.fact.args[1])
         for claim in situation.task.claims
@@ -237,11 +167,6 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
-    """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0).
-
-    False for a subgoal without squares.
-
-    subgoal : its squares are flat indices (row * columns + column) on the arrays of the view.
-    """
+    """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0)."""
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

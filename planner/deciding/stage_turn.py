@@ -22,26 +22,16 @@ ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/
 
 @dataclass(frozen=True)
 class StageTurn:
-    """All that one decision is worked out with. The decider owns the tools, and lends them for the time of a decision.
+    """All that one decision is worked out with. The decider lends its tools for the time of a decision."""
 
-    Attributes
-    ----------
-    stage : of the task: the goals that shall hold now; none when all stages are attained.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
-    track : where the robot has been, (x, y) in squares, map frame.
-    executor : follows manipulation plans, and remembers the one under way.
-    pursuer : walks after subgoals, and remembers the present route.
-    verifier : makes sure of what is believed, and remembers what was looked at for that.
-    """
-
-    stage: Stage
-    situation: Situation
+    stage: Stage  # of the task: the goals that shall hold now; none when all stages are attained
+    situation: Situation  # what is believed: world model, rooms, doors, corners and track
+    # What the parameters of the task mean, and which objects may match those that nothing matches yet
     reconciled: Reconciliation
-    track: Sequence[XY]
-    executor: PlanExecutor
-    pursuer: Pursuer
-    verifier: Verifier
+    track: Sequence[XY]  # where the robot has been, (x, y) in squares, map frame
+    executor: PlanExecutor  # follows manipulation plans, and remembers the one under way
+    pursuer: Pursuer  # walks after subgoals, and remembers the present route
+    verifier: Verifier  # makes sure of what is believed, and remembers what was looked at for that
 
     @cached_property
     def goals(self) -> Mapping[str, Fact]:
@@ -49,10 +39,7 @@ class StageTurn:
         return {f"g{number}": goal for number, goal in enumerate(self.stage.carried, 1)}
 
     def goals_of(self, subject: str) -> tuple[Fact, ...]:
-        """Return the goals that the robot is stuck with.
-
-        subject : the name of a goal, or one of ALL_OBJECTS, ROBOT_ITSELF and CONSTRAINTS.
-        """
+        """Return the goals that the robot is stuck with."""
         if subject in self.goals:
             return (self.goals[subject],)
         return {ALL_OBJECTS: self.stage.carried, ROBOT_ITSELF: self.stage.own}.get(subject, ())
@@ -68,10 +55,7 @@ class StageTurn:
         proof: Sequence[str] = (),
         along: Callable[[Subgoal], Decision | None] | None = None,
     ) -> Decision:
-        """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue.
-
-        missing : returns what is missing, in words; "" by default.
-        """
+        """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue."""
         return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, proof, along)
 
     def closes_loop(self, command: Command) -> bool:

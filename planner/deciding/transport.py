@@ -44,25 +44,14 @@ MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looke
 
 
 class Transporter:
-    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that.
-
-    It decides for one goal at a time; the tools that it decides with are lent for the time of a call.
-    """
+    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that."""
 
     def __init__(
         self,
         place: Callable[[Fact, Node, XY, Situation], Placement] = goal_placement,
         search: Callable[..., Sequence[Subgoal]] = subgoals_towards,
     ) -> None:
-        """Make a transporter that remembers nothing.
-
-        Parameters
-        ----------
-        place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
-            frame) and the situation; as planner.goals.object_goals.goal_placement.
-        search : returns the subgoals that are worth doing while something is missing; as
-            planner.deciding.search.subgoals_towards.
-        """
+        """Make a transporter that remembers nothing."""
         self._place: Callable[[Fact, Node, XY, Situation], Placement] = PerModel(place)
         self._search = search
         self._origins = Origins()
@@ -73,17 +62,7 @@ class Transporter:
         self._has_taken_along = False  # whether an object that shut the robot in was taken along to look
 
     def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
-        """Return where the object that a parameter means lay at first: the middle (x, y), in squares, map frame.
-
-        When it is asked for the first time, the present place is noted.
-
-        Later calls return the noted place, as the frame is believed by then.
-
-        Parameters
-        ----------
-        parameter : of the task.
-        node : the object that it means; its outline is known.
-        """
+        """Return where the object that a parameter means lay at first: the middle (x, y), in squares, map frame."""
         return self._origins.at(parameter, node, situation)
 
     @property
@@ -92,17 +71,7 @@ class Transporter:
         return self._place
 
     def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
-        """Return the next command towards a goal for an object, or the verdict; done when the goal holds.
-
-        The object is found, looked at, and carried, one after the other. An object in hand that the goal is not about,
-        and that shuts the robot in, is led out before.
-
-        Parameters
-        ----------
-        goal : one goal of the stage; its first argument is the parameter that means the object.
-        turn : the stage, what is believed, and the tools.
-        end : the name of the one end of the goal to which the object is brought; "" for any.
-        """
+        """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
         node = turn.situation.object_of(str(goal.args[0]))
         if node is None:
             return self._freed(self._find(goal, turn), goal, turn)
@@ -111,11 +80,7 @@ class Transporter:
         return self._freed(decision, goal, turn)
 
     def _examine(self, goal: Fact, node: Node, turn: StageTurn) -> Decision:
-        """Return the next look at the object of a goal of which something is not clear; nothing when all is clear.
-
-        What was pressed against walls is not looked at: it is pressed on, or done. The verdict `limit` when the outline
-        of the object cannot be told.
-        """
+        """Return the next look at the object of a goal of which something is not clear; nothing when all is clear."""
         if node.polygon is not None and self._presser.is_pressed(goal, node, turn.situation):
             return self._press_on(node, turn) or done(f"{goal} holds")
         look = _look_at(node, turn)
@@ -127,10 +92,7 @@ class Transporter:
         return nothing_to_do(f"{node.name} is clear")
 
     def _carry(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
-        """Return the next command to carry the object of a goal, or the verdict; done when the goal holds.
-
-        end : the name of the one end to which it is brought; "" for any.
-        """
+        """Return the next command to carry the object of a goal, or the verdict; done when the goal holds."""
         x = str(goal.args[0])
         assert node.polygon is not None
         land = self._place(goal, node, self.origin_of(x, node, turn.situation), turn.situation)
@@ -171,10 +133,8 @@ class Transporter:
         return self._check_proof(advice, decision, node, land, turn)
 
     def conflict(self, stage: Stage, situation: Situation) -> Decision:
-        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; else nothing.
-
-        Nothing, too, while it is not known where the goals hold.
-        """
+        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once."""
+        # Else nothing.
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
             node = situation.object_of(x)
@@ -196,10 +156,7 @@ class Transporter:
         return nothing_to_do("no two goals are known to contradict each other")
 
     def _freed(self, decision: Decision, goal: Fact, turn: StageTurn) -> Decision:
-        """Return a decision; in its place the push after which the held object no longer shuts the robot in.
-
-        Only an object that the goal is not about is led out, and nothing where the goal holds or nothing is to be done.
-        """
+        """Return a decision; in its place the push after which the held object no longer shuts the robot in."""
         held = turn.situation.model.object(turn.situation.model.held or "")
         if decision.result in ("idle", "done") or held is None:
             return decision
@@ -208,10 +165,7 @@ class Transporter:
         return self._lead_out(held, turn) or decision
 
     def _find(self, goal: Fact, turn: StageTurn) -> Decision:
-        """Return the next command to find what the parameter of a goal means, or the verdict when nothing can be that.
-
-        Before the verdict, an object that may be it if its size were known better is measured.
-        """
+        """Return the next command to find what the parameter of a goal means, or the verdict if nothing can be."""
         x = str(goal.args[0])
         immovable = dict(turn.reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else turn.situation.nothing_is(x))
@@ -228,14 +182,7 @@ class Transporter:
         return next((push for push in pushes if push is not None), decision)
 
     def _act(self, advice: Act, node: Node, turn: StageTurn) -> Decision:
-        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it.
-
-        In a loop the object is released instead.
-
-        advice : the command that the executor advises, and its reason.
-        node : the object that is carried.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
         if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
             advice = turn.executor.release_looping(turn.situation.model)
         if isinstance(advice.command, Move | Grasp):
@@ -255,18 +202,9 @@ class Transporter:
         subgoals: Sequence[Subgoal],
         turn: StageTurn,
     ) -> Decision:
-        """Return the next command to see where an object shall end, or another way there; or the verdict.
-
-        Where a door may be is looked at from places where the object would be in the way, and another way is looked for
-        without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
-        these cases it is not fetched. What must keep to some doors stays where it is, until these are known. An object
-        that shuts the robot in is taken along.
-
-        refused : why the object cannot be carried there now; the verdict is `impossible` only if this is proved.
-        land : where the goal holds: ends by name (squares, view frame), and what must be known first.
-        subgoals : what is worth a look.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to see where an object shall end, or another way there; or the verdict."""
+        # Where a door may be is looked at from places where the object would be in the way, and another way is looked
+        # for without it.
         stays = turn.situation.minds_doors(node.name) and not land.shut_in
         fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(turn.situation.model))
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
@@ -289,16 +227,7 @@ class Transporter:
         land: Placement,
         turn: StageTurn,
     ) -> Decision:
-        """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check.
-
-        In its place comes a look at the passage that is too narrow, or a push to measure the object. A proof that the
-        object cannot come to where it must be in any case makes any verdict `impossible`.
-
-        refused : why the object cannot be carried there.
-        decision : what was decided; one with a command is returned unchanged.
-        land : where the goal holds: ends by name (squares, view frame), and what must be known first.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check."""
         must_reach = land.must_reach.ends() if decision.verdict else {}
         if must_reach:
             shut_off = turn.executor.infeasibility(node, must_reach, turn.situation)
@@ -315,11 +244,7 @@ class Transporter:
         return instead or replace(decision, unless=refused.unless(), near=refused.neck())
 
     def _advice(self, node: Node, land: Placement, turn: StageTurn) -> Advice:
-        """Return what to do to carry an object to where its goal holds; while that is not known, to near it.
-
-        After plans that missed their end, and once the object is near, the end is looked at first: then it is an
-        Infeasibility that names what is missing.
-        """
+        """Return what to do to carry an object to where its goal holds; while that is not known, to near it."""
         executor, situation = turn.executor, turn.situation
         looked = len(situation.model.looked_from)
         missed = land.ends and executor.missed >= MAX_MISSED_PLANS
@@ -340,13 +265,7 @@ class Transporter:
         return Infeasibility(not situation.model.shaken, land.missing)
 
     def led_out(self, decision: Decision, turn: StageTurn) -> Decision:
-        """Return a decision; in place of a release the push after which what is held no longer shuts the robot in.
-
-        Parameters
-        ----------
-        decision : of any activity.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return a decision; in place of a release the push after which what is held no longer shuts the robot in."""
         held = turn.situation.model.object(turn.situation.model.held or "")
         if not isinstance(decision.command, Release) or turn.situation.model.lost or held is None or not held.polygon:
             return decision
@@ -354,12 +273,8 @@ class Transporter:
         return decision if out is None or out.command is None or turn.closes_loop(out.command) else out
 
     def _press_on(self, node: Node, turn: StageTurn) -> Decision | None:
-        """Return the next press of a held object against a wall; when none is left, what leads it out; or None.
-
-        It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
-
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next press of a held object against a wall; when none is left, what leads it out; or None."""
+        # It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
         act = self._presser.next(node, turn.situation.model)
         if act is None:
             return self._lead_out(node, turn) if turn.stage.goes_on else None
@@ -367,11 +282,8 @@ class Transporter:
         return Decision(act.command, f"{act.why}; {turn.stage}")
 
     def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision | None:
-        """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
-
-        shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the push after which the held object no longer shuts the robot in."""
+        # None when it does not, or cannot.
         if not shut_in and robot_can_leave(node, turn.situation):
             return None
         out = turn.executor.lead_out(node, turn.situation)
@@ -382,12 +294,7 @@ class Transporter:
         return Decision(out.command, f"{out.why}; {turn.stage}")
 
     def _measure_refused(self, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision | None:
-        """Return the next command to measure an object that seems too large for all ends; None when it surely is.
-
-        Returns the verdict `limit` when its size cannot be told.
-
-        ends : where it should lie, by name, in squares, view frame. turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to measure an object that seems too large for all ends; None when it surely is."""
         if (push := self._measure(node, turn)) is not None:
             return push
         least = least_outline(node)
@@ -398,13 +305,7 @@ class Transporter:
         return Decision(None, why, TaskVerdict.LIMIT)
 
     def _measure(self, node: Node, turn: StageTurn) -> Decision | None:
-        """Return the next command to push an object by a part of a square, to measure it; None when that is done.
-
-        None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
-        that.
-
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to push an object by a part of a square, to measure it; None when that is done."""
         for pose in self._size_estimator.poses(node):
             advice = turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation)
             if isinstance(advice, Act):
@@ -416,12 +317,7 @@ class Transporter:
 
 
 def _look_at(node: Node, turn: StageTurn) -> Decision | None:
-    """Return the next command to look at an object of which something is not clear; None when no look tells more.
-
-    What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
-
-    turn : the stage, what is believed, and the tools.
-    """
+    """Return the next command to look at an object of which something is not clear; None when no look tells more."""
     if node.polygon is None or node.vague or turn.verifier.is_unsettled(node):
         look = turn.look(turn.verifier.next_look(node, turn.situation))
         if look is not None:
@@ -430,14 +326,8 @@ def _look_at(node: Node, turn: StageTurn) -> Decision | None:
 
 
 def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision | None:
-    """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
-
-    None when there is nothing to see so, or no such push.
-
-    Viewpoints are tried in the order of `land.by_the_way`; the first that such a push leads to.
-
-    land : where the goal holds; it names what to see on the way. turn : the stage, what is believed, and the tools.
-    """
+    """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for."""
+    # None when there is nothing to see so, or no such push.
     for look in land.by_the_way.viewpoints():
         act = turn.executor.detour(node, look.squares, turn.situation)
         led = _push_to_see(act, look.what, turn)
@@ -447,13 +337,7 @@ def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision |
 
 
 def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision | None:
-    """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
-
-    turn : the stage, what is believed, and the tools.
-    subgoal : where the robot wants to look from.
-    fetch : whether an object that is not held is fetched for that; if not, only a held object is taken along, by one
-        straight push.
-    """
+    """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone."""
     advice = turn.executor.take_along(node, subgoal.squares, fetch, turn.situation)
     if isinstance(advice, Go):
         go = replace(advice, why=f"{node.name} is taken along: {subgoal.what}")
@@ -462,12 +346,7 @@ def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = Fal
 
 
 def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None:
-    """Return the decision to push a held object in order to see something; None when that would close a loop.
-
-    act : the push; None when there is none: then None is returned.
-    what : what is to be seen, in words.
-    turn : the stage, what is believed, and the tools.
-    """
+    """Return the decision to push a held object in order to see something; None when that would close a loop."""
     if act is None or turn.closes_loop(act.command):
         return None
     turn.executor.depart(act)
@@ -475,15 +354,7 @@ def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None
 
 
 def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> Decision | None:
-    """Return the push with which a held object stays within some squares while the robot looks; None for none.
-
-    Parameters
-    ----------
-    node : the object.
-    look : where the robot looks or feels.
-    within : (rows, columns) bool on the arrays of the view.
-    turn : the stage, what is believed, and the tools.
-    """
+    """Return the push with which a held object stays within some squares while the robot looks; None for none."""
     model = turn.situation.model
     if model.held != node.name:
         return None

@@ -34,12 +34,7 @@ class Trials:
         return ("try",) if self._begun is not None and situation.model.held == self._begun[0] else ()
 
     def go_on(self, turn: StageTurn) -> Decision:
-        """Return the next command for the thing in hand that is moved by a square; nothing when that is done.
-
-        Parameters
-        ----------
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command for the thing in hand that is moved by a square; nothing when that is done."""
         assert self._begun is not None
         name = self._begun[0]
         node = turn.situation.model.object(name)
@@ -50,16 +45,7 @@ class Trials:
         return self._noted(self._begun, carried)
 
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to find out whether what seems one thing is several; nothing when nothing is left.
-
-        Such a thing is felt all round: two colours tell for sure. What did not move when it was pushed is then pushed
-        each other way by a square. What the goals speak of stays where it is.
-
-        Parameters
-        ----------
-        goals : that the robot is stuck with.
-        turn : the stage, what is believed, and the tools.
-        """
+        """Return the next command to find out whether what seems one thing is several; nothing when nothing is left."""
         situation = turn.situation
         scope = feeling_scope(turn.stage, situation)
         felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)

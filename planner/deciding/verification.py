@@ -39,12 +39,7 @@ class Verifier:
         return node.name in self._unsettled
 
     def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
-        """Return a look at an object that is not settled; None when no look is left that may tell more.
-
-        A look that was begun is gone on with (see `is_unsettled`). An object is settled when its outline is known and
-        no square of it or beside it is open. Its kind is INSPECT, its chance 100. A change of what is remembered: the
-        object counts as unsettled while a look is returned.
-        """
+        """Return a look at an object that is not settled; None when no look is left that may tell more."""
         self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
@@ -55,15 +50,9 @@ class Verifier:
         return Subgoal(SubgoalKind.INSPECT, *look)
 
     def recheck_passage(self, refusal: Infeasibility, situation: Situation) -> Subgoal | None:
-        """Return a look from close by at a passage that is said to be too narrow, while the map is not sure.
-
-        The robot may misjudge where impressions were received, but knows how the squares of one impression lie to each
-        other. Returns None when the map is sure, no passage is named, or it was looked at again already, within
-        FOVEA_RANGE squares. The squares of the Subgoal are all floor from which the passage lies within the fovea;
-        possibly none.
-
-        refusal : the infeasibility that names the passage.
-        """
+        """Return a look from close by at a passage that is said to be too narrow, while the map is not sure."""
+        # Returns None when the map is sure, no passage is named, or it was looked at again already, within FOVEA_RANGE
+        # squares.
         model = situation.model
         neck = None if model.view.sure else refusal.neck()
         if neck is None:
@@ -78,15 +67,8 @@ class Verifier:
 
 
 def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal | None:
-    """Return a look that tells the orientation of the frame, before an object is grasped; None when it is not needed.
-
-    It is needed after few looks, when the plan turns the object: an object that was turned askew, and the map with it,
-    are hard to set right again. A push leaves it as it lies. But when a push did not move it, the robot may have
-    misjudged where it is, or what stands about it. None, too, when there is no floor left from which to look. Its kind
-    is INSPECT: to see the object from floor where the robot did not look yet.
-
-    turns : whether the plan turns it; if not, a look is needed only after a push that did not move it.
-    """
+    """Return a look that tells the orientation of the frame, before an object is grasped."""
+    # None when it is not needed.
     model = situation.model
     if not (
         orientation_is_uncertain(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck
@@ -98,12 +80,8 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
 
 
 def look_at_contradiction(situation: Situation) -> Subgoal | None:
-    """Return a look from elsewhere when the last impression contradicts what is believed; None when it does not.
-
-    What contradicts was withdrawn, so the new impression agrees with the rest if that is right. The look may have no
-    squares, when the robot looked from everywhere near. Its kind is INSPECT: to see the robot's own square from floor
-    nearby.
-    """
+    """Return a look from elsewhere when the last impression contradicts what is believed; None when it does not."""
+    # What contradicts was withdrawn, so the new impression agrees with the rest if that is right.
     model = situation.model
     if not model.contradicted:
         return None
@@ -118,28 +96,15 @@ def robot_square(model: WorldModel) -> Bools:
 
 
 def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
-    """Return where to feel how far an object goes that touches a wall or another object, or did not move when pushed.
-
-    Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
-    to be felt (planner.sights.frontiers.rim_viewpoint).
-    """
+    """Return where to feel how far an object goes that touches a wall or an object, or did not move when pushed."""
+    # Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it
+    # is to be felt (planner.sights.frontiers.rim_viewpoint).
     look = frontiers.rim_viewpoint(situation.cost_maps, node)
     return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
 
 
 def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
-    """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure.
-
-    First the frontier behind the door that shows whether the thing is in another room (not for the goal around), else a
-    part of the verge (what bounds the floor) that may be an object and on which the goal depends.
-
-    Parameters
-    ----------
-    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
-        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
-    began : where it began, (x, y) in squares, map frame.
-    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    """
+    """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure."""
     unseen = unseen_beyond_door(goal, began, covered, situation)
     if unseen is not None:
         return unseen
@@ -148,17 +113,7 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
 
 
 def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
-    """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure.
-
-    A door is a neck of the floor, and what was never seen counts as floor. Behind what seems to be a door there may be
-    only a narrow arm of the same room. Of all frontiers it is the one nearest to the thing; None, too, when none is
-    left, and for the goal around.
-
-    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
-        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
-    began : where the thing of the goal began, (x, y) in squares, map frame.
-    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    """
+    """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure."""
     model, view = situation.model, situation.model.view
     if goal == "around":
         return None
@@ -169,10 +124,7 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     rows, columns = np.nonzero(covered)
 
     def distance(look: frontiers.Viewpoint) -> float:
-        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares.
-
-        look : its squares are flat indices (row * columns + column) on the arrays of the view, at least one.
-        """
+        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares."""
         there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 

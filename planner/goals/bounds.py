@@ -22,17 +22,11 @@ WHAT_IS_FELT = "whether something stands against the wall was not felt"
 
 @dataclass(frozen=True, eq=False)
 class BoundsByTheWay:
-    """Deferred viewpoints: where it is felt, on the way, whether a goal holds.
+    """Deferred viewpoints: where it is felt, on the way, whether a goal holds."""
 
-    Attributes
-    ----------
-    goal, began, situation : as for `unfelt_bounds`.
-    covered : the squares where the thing may end.
-    """
-
-    goal: str
+    goal: str  # as for `unfelt_bounds`
     began: XY
-    covered: Bools
+    covered: Bools  # the squares where the thing may end
     situation: Situation
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
@@ -41,18 +35,9 @@ class BoundsByTheWay:
 
 
 def unfelt_bounds(goal: str, began: XY, covered: Bools, situation: Situation) -> list[Viewpoint]:
-    """Return where to feel each piece of the bounds on which a goal rests, or to see it better; [] when it is settled.
-
-    If such a piece were a thing, alone or together with all others that may be one, the goal would not hold. Those come
-    first without which it fails for sure; then smaller ones. Pieces that cannot be felt or seen better are left out.
-
-    Parameters
-    ----------
-    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
-        verge hides it from there).
-    began : where the thing of the goal began, (x, y) in squares, map frame.
-    covered : (rows, columns) bool on the arrays of the view, the squares that it covers.
-    """
+    """Return where to feel each piece of the bounds on which a goal rests, or to see it better."""
+    # [] when it is settled.
+    # If such a piece were a thing, alone or together with all others that may be one, the goal would not hold.
     pieces = situation.model.unfelt_pieces
     if not pieces:
         return []
@@ -78,10 +63,7 @@ def _felt_from(mask: Bools, situation: Situation) -> Viewpoint:
 
 
 def _failure(goal: str, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
-    """Return a function that tells whether a goal fails if the squares of a mask are no verge.
-
-    goal, began, covered : as for `unfelt_bounds`.
-    """
+    """Return a function that tells whether a goal fails if the squares of a mask are no verge."""
     model = situation.model
     if goal == "around":
         hidden = covered & hidden_from(model.verge, model, began)

@@ -53,16 +53,10 @@ CORNER_SHIFT_WIDTH = 3  # squares of likely floor beside each other that are ask
 
 @dataclass(frozen=True, eq=False)
 class RoomsByTheWay:
-    """Deferred viewpoints: rooms that are not seen and may hold another corner further towards a side.
+    """Deferred viewpoints: rooms that are not seen and may hold another corner further towards a side."""
 
-    Attributes
-    ----------
-    side : of the corner in the robot frame, such as northeast.
-    situation : what is believed.
-    """
-
-    side: str
-    situation: Situation
+    side: str  # of the corner in the robot frame, such as northeast
+    situation: Situation  # what is believed
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
         """Compute where these rooms can be seen: one Viewpoint for each (squares on the view's arrays); () for none."""
@@ -70,12 +64,9 @@ class RoomsByTheWay:
 
 
 def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is in the furthest corner towards a side.
-
-    How the floor goes on around the corner does not matter once the object covers it. Whether an unseen room has a
-    corner further on is looked at last, for mostly there is none; or on the way, with the object in hand. While it is
-    not known where the corner is, the placement has no ends, and says what is missing and where to look.
-    """
+    """Return where an object is in the furthest corner towards a side."""
+    # Whether an unseen room has a corner further on is looked at last, for mostly there is none; or on the way, with
+    # the object in hand.
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
         floor = _reachable_floor(node, situation)
@@ -105,10 +96,7 @@ def corner_may_move(goal: Fact, situation: Situation) -> bool:
 
 
 def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
-    """Choose how the robot goes up to an object that it shall carry to where some goals for it hold.
-
-    TO_TAKE; for the first goal of a known corner with the direction of its walls, as signs along the axes of the map.
-    """
+    """Choose how the robot goes up to an object that it shall carry to where some goals for it hold."""
     for goal in goals:
         side = corner_side(goal)
         if side in situation.corners:
@@ -118,10 +106,7 @@ def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
 
 
 def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
-    """Return the viewpoints of unseen rooms that may go further towards a side, with the floor short of them.
-
-    What lies behind their squares is seen from there, too.
-    """
+    """Return the viewpoints of unseen rooms that may go further towards a side, with the floor short of them."""
     rooms = rooms_to_see(side, situation)
     return tuple(
         r._replace(squares=np.union1d(r.squares, look_ahead_squares(situation.cost_maps, r.squares))) for r in rooms
@@ -129,12 +114,7 @@ def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
-    """Return the placement in a corner of the known floor, at its very point.
-
-    When its walls are settled, to be within a square of them is enough; else they may be further away than believed.
-    When the places of the robot and the object are not certain, the corner is looked at first: then the placement has
-    no ends.
-    """
+    """Return the placement in a corner of the known floor, at its very point."""
     corner, end, model = situation.corners[side], _corner_end(side, situation), situation.model
     (column, row), view = corner.square, model.view
     around = dilate(model.squares([(column + view.west, row + view.south)]), 1)
@@ -157,15 +137,9 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
 
 
 def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Placement:
-    """Return the placement in a corner with settled walls that lie along rows and columns.
-
-    A rotated object may reach hardly further from the walls than it would straight; where that is not possible, it may
-    end there rotated. An object that covers some squares in part looks larger than it is, on any side by up to one
-    square. So it counts as in the corner when it looks as if it touched the walls, or was seen not to be smaller. An
-    object whose place is inexact is brought nearer if possible.
-
-    end : the corner, with the default slack of one square.
-    """
+    """Return the placement in a corner with settled walls that lie along rows and columns."""
+    # A rotated object may reach hardly further from the walls than it would straight; where that is not possible, it
+    # may end there rotated.
     close = replace(end, slack=APPROACH_GAP)
     if not is_off_quarter_turn(node):
         if node.inexact:
@@ -182,11 +156,7 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
 
 
 def _between_placement(side: str, end: Between, shape: Any) -> Placement:
-    """Return the placement between slanted walls, at any angle: brought near to both, and then pressed against them.
-
-    Slanted walls are seen as stairs of squares and lie somewhere behind these. Only what stops the object tells where.
-    The presses are named into, one and two: towards both walls, the first, the second.
-    """
+    """Return the placement between slanted walls, at any angle: brought near to both, and then pressed against them."""
     one, two = end.gaps(shape)
     gaps = {
         "into": (max(one, 0.0) + STAIR_DEPTH, max(two, 0.0) + STAIR_DEPTH),
@@ -199,22 +169,12 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
 
 
 def _pressed(end: InCorner) -> InCorner:
-    """Return an end in a corner to which the object is pressed on, where moves by whole squares leave a gap.
-
-    The object must come nearer to the walls by PRESS_DISTANCE squares, and is planned to end short by as much.
-    """
+    """Return an end in a corner to which the object is pressed on, where moves by whole squares leave a gap."""
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
 
 def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translate]:
-    """Return the pushes towards the walls of a corner that an object may not touch, as far as these may be away.
-
-    A wall lies anywhere in the squares in which it was seen, and so does a side of the object that is not settled.
-    Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is. With
-    a part of a square free in between, seen or not, it may not be.
-
-    They are named "across", along x, and "up", along y; without those whose gap is at most CONTACT_GAP.
-    """
+    """Return the pushes towards the walls of a corner that an object may not touch, as far as these may be away."""
     x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
     pushes = {
         "across": (x, Translate(end.sx * (x + WALL_DEPTH), 0.0)),
@@ -224,20 +184,14 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
 
 
 def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
-    """Return how much further in than believed the sides towards the walls of a corner may lie, (x, y) in squares.
-
-    First for the eastern or western side of the object, then for the northern or southern one: those that `end`, the
-    corner, is towards.
-    """
+    """Return how much further in than believed the sides towards the walls of a corner may lie, (x, y) in squares."""
     west, east, south, north = node.short
     return east if end.sx > 0 else west, north if end.sy > 0 else south
 
 
 def _surely(end: InCorner, node: Node, shape: Any) -> bool:
-    """Return whether an object is in a corner, however far in its sides lie.
-
-    It may lie up to WALL_DEPTH within the wall's squares, for the wall may lie deeper in them.
-    """
+    """Return whether an object is in a corner, however far in its sides lie."""
+    # It may lie up to WALL_DEPTH within the wall's squares, for the wall may lie deeper in them.
     gaps, further = end.gaps(shape.bounds), _further_in(end, node)
     return all(
         gap >= -WALL_DEPTH and gap + far <= end.slack + NEGLIGIBLE_LENGTH
@@ -252,10 +206,7 @@ def _corner_end(side: str, situation: Situation) -> InCorner:
 
 
 def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, End]:
-    """Return the corner of likely floor, as an end by `name`, where that goes further than the sure floor; else {}.
-
-    It lies at most MAX_CORNER_SHIFT squares further along each axis.
-    """
+    """Return the corner of likely floor, as an end by `name`, where that goes further than the sure floor; else {}."""
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     view = situation.model.view
     likely = np.pad(view.seen & (view.probability <= MAX_LIKELY_FREE), MAX_CORNER_SHIFT)
@@ -273,13 +224,9 @@ def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, 
 
 
 def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[str, End]:
-    """Return places from which the robot with the object in hand sees a corner well; {} when the object is in it.
-
-    Best is the corner of what is seen. The robot takes the object so that it does not stand in its way there, and if
-    that is the true corner, the object is there already. Second best is anywhere around it, on the floor that the robot
-    can reach. The ends are named near_<side> and about_<side>; the second is left out when it is empty or the object is
-    there.
-    """
+    """Return places from which the robot with the object in hand sees a corner well; {} when the object is in it."""
+    # The robot takes the object so that it does not stand in its way there, and if that is the true corner, the object
+    # is there already.
     end, shape = _corner_end(side, situation), to_view_frame(node.polygon, situation)
     if meets_end(end, shape):
         return {}
@@ -290,11 +237,7 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
 
 
 def _region_of_corner(side: str, node: Node, situation: Situation) -> Bools:
-    """Return the squares that an object in a corner must reach: unseen ones, and the floor around the known corner.
-
-    Around is as far as the object's bounding box is long, and a square more. (rows, columns) bool on the arrays of the
-    view.
-    """
+    """Return the squares that an object in a corner must reach: unseen ones, and the floor around the known corner."""
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
     around = _around(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
@@ -313,11 +256,8 @@ def _around(side: str, squares: int, situation: Situation) -> Bools:
 
 
 def _reachable_floor(node: Node, situation: Situation) -> Bools:
-    """Return the squares that the robot can reach when the object to be carried moves along, (rows, columns) bool.
-
-    Only squares that are surely floor are crossed, and those of the object. Squares under other objects beside them
-    count, for these can be moved aside.
-    """
+    """Return the squares that the robot can reach when the object to be carried moves along, (rows, columns) bool."""
+    # Squares under other objects beside them count, for these can be moved aside.
     cost_maps = situation.cost_maps
     model = situation.model
     mask: Bools = reach(cost_maps.free(0) | model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED

@@ -20,33 +20,19 @@ from planner.situation import Situation
 
 @dataclass(frozen=True)
 class Supposition:
-    """An object as it lies if it goes on in what seems to be wall.
+    """An object as it lies if it goes on in what seems to be wall."""
 
-    Attributes
-    ----------
-    node : the object, with the squares and the outline that it has then.
-    side : the direction (columns, rows) along the axes of the map in which it goes on, one of SIDE_DIRECTIONS.
-    depth : by how many squares it goes on.
-    situation : what is believed, with this object in place of the one that was seen.
-    """
-
-    node: Node
-    side: Square
-    depth: int
-    situation: Situation
+    node: Node  # the object, with the squares and the outline that it has then
+    side: Square  # the direction (columns, rows) along the axes of the map in which it goes on, one of SIDE_DIRECTIONS
+    depth: int  # by how many squares it goes on
+    situation: Situation  # what is believed, with this object in place of the one that was seen
 
 
 def supposed_in_walls(node: Node, situation: Situation, opens: Callable[[Bools], bool]) -> Iterator[Supposition]:
-    """Yield how an object lies if it goes on in a wall, for each side on which its removal would open a way then.
-
-    For each side it goes on first up to the floor that is seen behind it, then just so far that a way would open, if
-    these differ. Nothing is yielded for an object that was moved, for it was seen to end, nor while its outline is not
-    known.
-
-    Parameters
-    ----------
-    opens : tells of squares, (rows, columns) bool on the arrays of the view, whether a way opens when they are free.
-    """
+    """Yield how an object lies if it goes on in a wall, for each side on which its removal would open a way then."""
+    # For each side it goes on first up to the floor that is seen behind it, then just so far that a way would open, if
+    # these differ. Nothing is yielded for an object that was moved, for it was seen to end, nor while its outline is
+    # not known.
     mask = situation.model.mask(node.patch)
     for side in SIDE_DIRECTIONS:
         parts = [possible_extension(node, side, depth, situation.model) for depth in range(MAX_HIDDEN_DEPTH + 2)]
@@ -63,15 +49,7 @@ def supposed_in_walls(node: Node, situation: Situation, opens: Callable[[Bools],
 
 
 def suppose(node: Node, side: Square, depth: int, situation: Situation) -> Supposition | None:
-    """Return the supposition that an object goes on to one side by `depth` squares; None when it was seen to end.
-
-    None, too, when its outline is not known.
-
-    Parameters
-    ----------
-    side : the direction (columns, rows) along the axes of the map, one of SIDE_DIRECTIONS.
-    depth : in squares, 1 or more.
-    """
+    """Return the supposition that an object goes on to one side by `depth` squares; None when it was seen to end."""
     if node.moved or node.polygon is None:
         return None
     model = situation.model

@@ -19,21 +19,8 @@ OPPOSITE_CORNERS = (("northeast", "southwest"), ("northwest", "southeast"))
 
 
 def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
-    """Find two of some goals that cannot hold at once for one object.
-
-    Pairs are tried in the order (0, 1), (0, 2), ..., (1, 2), ... A goal conflicts with another when no end of the one
-    shares enough region with an end of the other, loose ends included.
-
-    Parameters
-    ----------
-    placements : where each goal holds. A goal of which that is not known yet may hold anywhere.
-    shape : the outline of the object, in squares, view frame.
-
-    Returns
-    -------
-    tuple[int, int] | None
-        The indices into `placements` of the first such two goals; None when each two of them may hold at once.
-    """
+    """Find two of some goals that cannot hold at once for one object."""
+    # None when each two of them may hold at once.
     for (one, a), (other, b) in combinations(enumerate(placements), 2):
         if all(placement.ends and not placement.missing for placement in (a, b)):
             pairs = product(*([*placement.ends.values(), *placement.loose.values()] for placement in (a, b)))
@@ -43,13 +30,7 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
 
 
 def opposite_corners_reason(goals: Sequence[Fact], situation: Situation, length: float = 0.0) -> str:
-    """Return in words why nothing can be at two opposite corners at once; "" when the goals do not ask for that.
-
-    The goals are those of one stage for one thing. However much more floor becomes known, such corners only move
-    further apart. Also "" when the two corners of the known floor are near enough to each other.
-
-    length : of the thing at its longest, in squares.
-    """
+    """Return in words why nothing can be at two opposite corners at once; "" when the goals do not ask for that."""
     wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE_CORNERS:
         if {one, other} <= wanted:
@@ -68,11 +49,8 @@ def _may_share(one: End, other: End, shape: Any) -> bool:
 
 
 def enclosing_region(end: End, shape: Any) -> Any:
-    """Compute a region that holds a shape wholly wherever it meets an end, at any orientation.
-
-    A shapely Polygon or MultiPolygon; all in squares, in one frame. An At end is relative to the shape as it lies.
-    Raises ValueError for a Roomy end, which no goal of a task has.
-    """
+    """Compute a region that holds a shape wholly wherever it meets an end, at any orientation."""
+    # Raises ValueError for a Roomy end, which no goal of a task has.
     if isinstance(end, Inside):
         return end.polygon.buffer(REGION_ROUNDING)
     if isinstance(end, At):
@@ -86,10 +64,7 @@ def enclosing_region(end: End, shape: Any) -> Any:
 
 
 def _corner_region(end: InCorner, longest: float) -> Any:
-    """Return the box (shapely Polygon) in a corner that holds any shape that meets the end.
-
-    longest : the greatest distance between two points of the shape, or more, in squares.
-    """
+    """Return the box (shapely Polygon) in a corner that holds any shape that meets the end."""
     reach = end.slack + end.press + longest + REGION_ROUNDING
     far_x, far_y = end.x - math.copysign(reach, end.sx), end.y - math.copysign(reach, end.sy)
     near_x, near_y = end.x + math.copysign(REGION_ROUNDING, end.sx), end.y + math.copysign(REGION_ROUNDING, end.sy)

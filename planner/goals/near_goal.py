@@ -26,20 +26,13 @@ POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the me
 
 
 def start_placement(node: Node, situation: Situation) -> Placement:
-    """Return where an object is at the start: within one square of the unit square around where the robot woke.
-
-    The ends are named start_east, start_north, start_west and start_south; a loose one is named start.
-    """
+    """Return where an object is at the start: within one square of the unit square around where the robot woke."""
     place = to_view_frame(shapely.Point(*situation.model.frame.origin), situation)
     return touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
 def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is beside another one, the meaning of a parameter: within one square of its squares.
-
-    The ends are named by the other object and a side of it, such as o2_east. When nothing is known to be the other
-    object, there are no ends, and `missing` says so.
-    """
+    """Return where an object is beside another one, the meaning of a parameter: within one square of its squares."""
     target = situation.object_of(other)
     if target is None:
         return Placement({}, situation.nothing_is(other))
@@ -49,12 +42,7 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
 
 
 def touching(shape: Any, target: Any, name: str) -> Placement:
-    """Return where a shape is within one square of a target; both are shapely geometries in squares, one frame.
-
-    Best are the four sides of the target, with the bounding boxes touching: name_east, name_north, name_west and
-    name_south. Where none of them is possible, any place near the target will do. No such place is further away than
-    the length of the shape. It holds when the distance of the two is at most BESIDE_DISTANCE.
-    """
+    """Return where a shape is within one square of a target; both are shapely geometries in squares, one frame."""
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
     level = ((x0 + x1) - (west + east)) / 2, ((y0 + y1) - (south + north)) / 2
@@ -74,13 +62,7 @@ def touching(shape: Any, target: Any, name: str) -> Placement:
 
 
 def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
-    """Return where an object is at the pose of a goal: one end, "pose".
-
-    It holds within POSE_TOLERANCE squares and ANGLE_TOLERANCE degrees.
-
-    goal : pose(x, "POINT (x y)", degrees): where its middle shall be, in squares, in the robot's own frame; and the
-        rotation from its first orientation, in degrees, counter-clockwise positive.
-    """
+    """Return where an object is at the pose of a goal: one end, "pose"."""
     place, degrees = goal.args[1:]
     assert isinstance(place, Text)
     assert isinstance(degrees, Number)

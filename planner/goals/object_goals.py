@@ -26,16 +26,10 @@ REGION_RIM = 1.0  # squares from the edge of a region in which an object may not
 
 @dataclass(frozen=True, eq=False)
 class OptimisticEnds:
-    """Deferred ends inside some squares, or inside the unseen squares that these lead to.
+    """Deferred ends inside some squares, or inside the unseen squares that these lead to."""
 
-    Attributes
-    ----------
-    masks : (rows, columns) bool on the arrays of the view, by the name of the end.
-    situation : what is believed.
-    """
-
-    masks: Mapping[str, Bools]
-    situation: Situation
+    masks: Mapping[str, Bools]  # (rows, columns) bool on the arrays of the view, by the name of the end
+    situation: Situation  # what is believed
 
     def ends(self) -> Mapping[str, End]:
         """Compute each end as if the floor went on as optimistic planning assumes; it may reach beyond the view."""
@@ -44,22 +38,7 @@ class OptimisticEnds:
 
 
 def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
-    """Compute where a goal holds for an object.
-
-    The goal holds when the object meets one of the ends as it is now; for a corner see `planner.goals.corner_goal`.
-    While what is settled may be wrong, the regions end REGION_RIM squares before their edges.
-
-    Parameters
-    ----------
-    goal : a goal whose first argument is an object parameter.
-    node : the object; its outline is known.
-    began : where its middle was at first, a point (x, y) of the map frame, in squares.
-
-    Raises
-    ------
-    ValueError
-        When the goal is none for an object.
-    """
+    """Compute where a goal holds for an object."""
     found = _placement(goal, node, began, situation)
     if not situation.model.view.sure:
         found = replace(found, ends={name: _without_rim(end) for name, end in found.ends.items()})
@@ -101,11 +80,7 @@ def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> boo
 
 
 def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
-    """Return the placement beyond a door of the room that holds `began`, a point (x, y) of the map frame, in squares.
-
-    At first a likely door will do: the way there shows whether it is one. Walls that may be objects, and so might make
-    other rooms, are only looked at when the object is there. Ends are named by rooms: r1, r2, ...
-    """
+    """Return the placement beyond a door of the room that holds `began`, a point (x, y) of the map frame."""
     rooms = situation.rooms
     beyond, viewpoints = situation.next_rooms(began)
     if beyond.any():
@@ -124,18 +99,12 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
 
 
 def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
-    """Return the parts of a mask that belong to each room, by the name of the room: r1, r2, ...
-
-    Both are (rows, columns) bool on the arrays of the view; rooms without such squares are left out.
-    """
+    """Return the parts of a mask that belong to each room, by the name of the room: r1, r2, ..."""
     return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 
 
 def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
-    """Return the placement out of sight of `began`, a point (x, y) of the map frame, behind a corner of the verge.
-
-    One end, "hidden"; none while the hidden squares are fewer than the object needs.
-    """
+    """Return the placement out of sight of `began`, a point (x, y) of the map frame, behind a corner of the verge."""
     model = situation.model
     hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:

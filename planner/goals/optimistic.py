@@ -16,11 +16,7 @@ OPTIMISTIC_LEVEL = 2  # certainty level of the seen squares that are assumed to 
 
 
 def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
-    """Add to a mask the unseen squares that UNSEEN_MARGIN steps from square to neighbouring square lead to from it.
-
-    Neighbours share an edge; the steps lead over unseen squares only. The result has a margin of UNSEEN_MARGIN squares
-    on each side, over which they lead, too.
-    """
+    """Add to a mask the unseen squares that UNSEEN_MARGIN steps from square to neighbouring square lead to from it."""
     unseen, wider = ~np.pad(situation.model.view.seen, UNSEEN_MARGIN), np.pad(mask, UNSEEN_MARGIN)
     for _ in range(UNSEEN_MARGIN):
         wider |= with_edge_neighbours(wider) & unseen
@@ -28,9 +24,5 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
 
 
 def optimistic_floor(situation: Situation) -> Bools:
-    """Return all squares that are assumed to be free, (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN) bool.
-
-    These are the free ones of certainty level OPTIMISTIC_LEVEL (0 is the surest), and the unseen ones that at most
-    UNSEEN_MARGIN steps lead to from these.
-    """
+    """Return all squares that are assumed to be free, (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN) bool."""
     return spread_into_unseen(situation.cost_maps.free(OPTIMISTIC_LEVEL), situation)

@@ -16,41 +16,28 @@ DOOR_TOLERANCE = 3.0  # squares by which the believed place of a door may change
 
 
 class Origin(NamedTuple):
-    """The place where the middle of a thing was at first.
+    """The place where the middle of a thing was at first."""
 
-    Attributes
-    ----------
-    place : the point (east, north), in squares, in the robot's own frame (east and north of where it woke).
-    name : the name of the node.
-    moved : whether the robot has moved it since.
-    anew : whether the robot had been lost, and had begun its map anew, before the place was noted.
-    doors : the middles of the doors of its room, as points of the robot's own frame in squares, as believed before it
-        was moved.
-    """
-
-    place: XY
-    name: str
-    moved: bool = False
-    anew: bool = False
+    place: XY  # the point (east, north), in squares, in the robot's own frame (east and north of where it woke)
+    name: str  # the name of the node
+    moved: bool = False  # whether the robot has moved it since
+    anew: bool = False  # whether the robot had been lost, and had begun its map anew, before the place was noted
+    # The middles of the doors of its room, as points of the robot's own frame in squares, as believed before it was
+    # moved
     doors: tuple[XY, ...] = ()
 
 
 class Origins:
-    """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`).
+    """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`)."""
 
-    The outline of a thing is known. `lost` raises KeyError unless `at` was asked about the parameter before.
-    """
+    # `lost` raises KeyError unless `at` was asked about the parameter before.
 
     def __init__(self) -> None:
         """Remember no origin yet."""
         self._known: dict[str, Origin] = {}
 
     def at(self, parameter: str, node: Node, situation: Situation) -> XY:
-        """Return where the middle of a thing was at first, and note it when the thing is new.
-
-        A point (x, y) of the map frame as it is believed now, in squares. A thing that the robot has moved and then
-        lost sight of counts as the same one when the parameter is bound to another node.
-        """
+        """Return where the middle of a thing was at first, and note it when the thing is new."""
         model, known = situation.model, self._known.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
         if known is None or (known.name != node.name and not gone):
@@ -62,11 +49,7 @@ class Origins:
         return began
 
     def lost(self, parameter: str, node: Node, situation: Situation) -> str:
-        """Return in words why the noted origin of a thing is not reliable any more; "" while it is.
-
-        After the robot was lost, the origin may be squares away from where it believes it. A door of the thing's room
-        counts as lost only where observations contradict what is believed.
-        """
+        """Return in words why the noted origin of a thing is not reliable any more; "" while it is."""
         known, model = self._known[parameter], situation.model
         if model.anew and not known.anew:
             return "the robot was lost"
@@ -76,10 +59,7 @@ class Origins:
 
 
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
-    """Return the middles of the doors of the room that holds a place, as points (east, north) of the robot's own frame.
-
-    In squares. place : a point (x, y) of the map frame.
-    """
+    """Return the middles of the doors of the room that holds a place, (east, north) in the robot's own frame."""
     model, rooms = situation.model, situation.rooms
     room = int(rooms.labels[model.view.locate(*place)])
     return tuple(model.place_to_utak(*door.place) for door in rooms.leading(room))

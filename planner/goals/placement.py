@@ -45,14 +45,9 @@ class DeferredViewpoints(Protocol):
 
 @dataclass(frozen=True)
 class KnownEnds:
-    """Deferred ends that are known already.
+    """Deferred ends that are known already."""
 
-    Attributes
-    ----------
-    by_name : the ends, in squares, view frame; none by default.
-    """
-
-    by_name: Mapping[str, End] = field(default_factory=dict)
+    by_name: Mapping[str, End] = field(default_factory=dict)  # the ends, in squares, view frame; none by default
 
     def ends(self) -> Mapping[str, End]:
         """Return the ends, by name, in squares, view frame."""
@@ -61,14 +56,9 @@ class KnownEnds:
 
 @dataclass(frozen=True, eq=False)
 class RegionEnds:
-    """Deferred ends inside some squares.
+    """Deferred ends inside some squares."""
 
-    Attributes
-    ----------
-    masks : (rows, columns) bool on the arrays of the view, by the name of the end.
-    """
-
-    masks: Mapping[str, Bools]
+    masks: Mapping[str, Bools]  # (rows, columns) bool on the arrays of the view, by the name of the end
 
     def ends(self) -> Mapping[str, End]:
         """Compute the region of each mask as an end, by the same names, in squares, view frame."""
@@ -86,51 +76,36 @@ class NoViewpoints:
 
 @dataclass(frozen=True)
 class Placement:
-    """The places where a goal holds for an object, and what must be known first.
+    """The places where a goal holds for an object, and what must be known first."""
 
-    Ends are in squares, view frame: that of the arrays of the view, (0, 0) the south-west corner of square [0, 0].
-
-    Attributes
-    ----------
-    ends : by name, where the object must end; empty while that is not known.
-    missing : in words, what must be known first; "" when nothing is missing.
-    viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
-    approach : by name, places near the end from which the robot sees better where the end is; the best one first.
-    holds : whether the goal holds as the object is now.
-    there : whether the goal holds but for what must be known first.
-    shut_in : as `there`, and the robot cannot leave the object where it is, for it shuts the robot in.
-    loose : by name, where the object may end if none of `ends` can be reached.
-    must_reach : deferred, while the end is not known, regions that the object must reach wherever it is: unseen
-        squares, and the squares of the one end that may be it.
-    hoped : deferred, the ends that follow if the floor goes on as optimistic planning assumes.
-    by_the_way : deferred, what must be seen before the goal holds and is better seen on the way: coming back takes
-        longer.
-    presses : by name, pushes (dx, dy) in squares along the axes of the map, in the order in which they are made, after
-        which the object touches walls that may be further away than believed. After them a goal that is believed to
-        hold surely holds.
-    some : whether the object may end elsewhere, too. Then it proves nothing that none of `ends` can be reached.
-    """
-
-    ends: Mapping[str, End]
-    missing: str = ""
+    ends: Mapping[str, End]  # by name, where the object must end; empty while that is not known
+    missing: str = ""  # in words, what must be known first; "" when nothing is missing
+    # Where just that may be seen; when there are none, any place worth a look may show it
     viewpoints: tuple[Viewpoint, ...] = ()
+    # By name, places near the end from which the robot sees better where the end is; the best one first
     approach: Mapping[str, End] = field(default_factory=dict)
-    holds: bool = False
-    there: bool = False
-    shut_in: bool = False
+    holds: bool = False  # whether the goal holds as the object is now
+    there: bool = False  # whether the goal holds but for what must be known first
+    shut_in: bool = False  # as `there`, and the robot cannot leave the object where it is, for it shuts the robot in
+    # By name, where the object may end if none of `ends` can be reached
     loose: Mapping[str, End] = field(default_factory=dict)
+    # Deferred, while the end is not known, regions that the object must reach wherever it is: unseen squares, and the
+    # squares of the one end that may be it
     must_reach: DeferredEnds = KnownEnds()
+    # Deferred, the ends that follow if the floor goes on as optimistic planning assumes
     hoped: DeferredEnds = KnownEnds()
+    # Deferred, what must be seen before the goal holds and is better seen on the way: coming back takes longer
     by_the_way: DeferredViewpoints = NoViewpoints()
+    # By name, pushes (dx, dy) in squares along the axes of the map, in the order in which they are made, after which
+    # the object touches walls that may be further away than believed. After them a goal that is believed to hold surely
+    # holds.
     presses: Mapping[str, Translate] = field(default_factory=dict)
+    # Whether the object may end elsewhere, too. Then it proves nothing that none of `ends` can be reached.
     some: bool = False
 
 
 def meets_end(end: End, shape: Any) -> bool:
-    """Return whether a shape (shapely Polygon) meets an end as it is now; both in squares, view frame.
-
-    An At end is met when it is the shape's present pose; a Roomy end never.
-    """
+    """Return whether a shape (shapely Polygon) meets an end as it is now; both in squares, view frame."""
     return is_goal_met(end, shape, shape)
 
 
@@ -140,31 +115,22 @@ def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
 
 
 def is_off_quarter_turn(node: Node) -> bool:
-    """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns.
-
-    A quarter turn is 90 degrees. What counts is `node.turned`, the degrees since it was first held.
-    """
+    """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns."""
+    # What counts is `node.turned`, the degrees since it was first held.
     over = node.turned % 90.0
     return min(over, 90.0 - over) > ANGLE_TOLERANCE
 
 
 def to_view_frame(shape: Any, situation: Situation) -> Any:
-    """Convert a shape (shapely geometry, in squares) from the map frame to the view frame; the shape is not changed.
-
-    The view frame is that of the arrays of the view: (0, 0) is the south-west corner of square [0, 0].
-    """
+    """Convert a shape (shapely geometry, in squares) from the map frame to the view frame; the shape is not changed."""
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
 
 
 def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bools:
-    """Compute the squares over which an object may not be carried: necks of doors, and regions that the task forbids.
-
-    The robot holds the object wherever that goes, so what is forbidden to either is forbidden to both. Squares that the
-    object covers now are left out.
-
-    (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view.
-    """
+    """Compute the squares over which an object may not be carried."""
+    # Necks of doors, and regions that the task forbids.
+    # The robot holds the object wherever that goes, so what is forbidden to either is forbidden to both.
     doors = (*situation.shut(ROBOT), *situation.shut(node.name))
     mask = situation.region_kept_off(node.name, margin)
     if not situation.lenient:
@@ -174,15 +140,7 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
 
 
 def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
-    """Compute the squares straight behind an object that seem to be wall and may belong to the object.
-
-    They are verge (what bounds the floor) without a gap from the object on, at most `depth` rows or columns. (rows,
-    columns) bool on the arrays of the view. An object that was moved has none: it was seen to end.
-
-    Parameters
-    ----------
-    side : the direction (columns, rows) along the axes of the map, one of SIDE_DIRECTIONS.
-    """
+    """Compute the squares straight behind an object that seem to be wall and may belong to the object."""
     mask = model.mask(node.patch)
     found, last = np.zeros_like(mask), mask
     for _ in range(depth if not node.moved else 0):
@@ -192,16 +150,8 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
 
 
 def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
-    """Compute how an object that may go on in a wall is pulled straight out of it, so that it is seen whole.
-
-    The pose is a translation from where the object lies, in squares along the axes of the map. None when the object
-    cannot be moved at all that way.
-
-    Parameters
-    ----------
-    side : the direction (columns, rows) along the axes of the map in which it may go on, one of SIDE_DIRECTIONS.
-    depth : how far, in squares. It is pulled by one square more, or as far as the floor is surely free.
-    """
+    """Compute how an object that may go on in a wall is pulled straight out of it, so that it is seen whole."""
+    # None when the object cannot be moved at all that way.
     mask, (dx, dy) = situation.model.mask(node.patch), side
     room = np.pad(situation.cost_maps.free(0) | mask, depth + 1)
     rows, columns = np.nonzero(np.pad(mask, depth + 1))
@@ -211,13 +161,8 @@ def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situ
 
 
 def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
-    """Return the pose to which an object is pulled out of a wall, when squares are needed that it may cover there.
-
-    An At end: the translation from where it lies, in squares along the axes of the map. Returns None when none of the
-    squares may belong to the object, or when it cannot be pulled. It is pulled out as if it went on as far as possible.
-
-    needed : (rows, columns) bool on the arrays of the view, the squares that must become free.
-    """
+    """Return the pose to which an object is pulled out of a wall, when squares are needed that it may cover there."""
+    # Returns None when none of the squares may belong to the object, or when it cannot be pulled.
     for depth, side in product(range(MAX_HIDDEN_DEPTH, 0, -1), SIDE_DIRECTIONS):
         if (possible_extension(node, side, depth, situation.model) & needed).any():
             pose = pull_out_pose(node, side, depth, situation)

@@ -38,17 +38,7 @@ def is_moved_for_others_only(parameter: str, goals: Iterable[Fact], parameters: 
 
 
 def as_meant(stage: Stage, situation: Situation, holds: Callable[[Fact], bool], other_way: bool = False) -> Stage:
-    """Return a stage with its goals in the order in which they are met, each about what is moved for it.
-
-    Of two things the one is moved that no other goal of the stage puts in a place and that is not known to be fixed;
-    else the one that is named first. Goals about things of which one must be brought elsewhere before are `later`.
-    Things are added that must be brought where the robot can be at them, or where it can go round them.
-
-    Parameters
-    ----------
-    holds : returns whether a goal for an object holds.
-    other_way : whether of two things the other one is moved.
-    """
+    """Return a stage with its goals in the order in which they are met, each about what is moved for it."""
     track = [goal for goal in stage.own if goal.name in TRACK_GOALS]
     ready = _ready_to_be_circled(track, situation) if track else ()
     if not track and all(map(holds, stage.carried)):
@@ -116,11 +106,7 @@ def _ready_to_be_circled(track: Sequence[Fact], situation: Situation) -> tuple[F
 
 
 def ready_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
-    """Return where a thing lies so that a goal of the robot can hold: ready(x, G).
-
-    To be circled it lies where it touches no wall. Else it is beside the squares where G holds, or within them where
-    they are many. In squares, view frame.
-    """
+    """Return where a thing lies so that a goal of the robot can hold: ready(x, G)."""
     inner = goal.args[1]
     assert isinstance(inner, Symbol)
     own = situation.model.mask(node.patch)

@@ -46,21 +46,16 @@ LINE_SAMPLES = 192  # places along a line of sight at which it may meet the verg
 
 @dataclass(frozen=True)
 class Destination:
-    """The squares on which a goal holds for the robot, and what must be known first.
+    """The squares on which a goal holds for the robot, and what must be known first."""
 
-    Attributes
-    ----------
-    squares : flat indices (row * columns + column) on the arrays of the view, (n,) int64; empty while it is not known
-        where.
-    missing : in words, what must be known first; "" when nothing is missing. With squares, it may hold elsewhere, too.
-    viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
-    also : all squares where it holds, those included that count only where another goal leaves no better ones; None for
-        no others.
-    """
-
+    # Flat indices (row * columns + column) on the arrays of the view, (n,) int64; empty while it is not known where
     squares: SquareIndices
+    # In words, what must be known first; "" when nothing is missing. With squares, it may hold elsewhere, too.
     missing: str = ""
+    # Where just that may be seen; when there are none, any place worth a look may show it
     viewpoints: tuple[Viewpoint, ...] = ()
+    # All squares where it holds, those included that count only where another goal leaves no better ones; None for no
+    # others
     also: SquareIndices | None = None
 
 
@@ -72,22 +67,13 @@ def jointly(where: Sequence[Destination]) -> Sequence[Destination]:
 
 
 def unreachable_reason(where: Sequence[Destination]) -> str:
-    """Return in words why goals cannot be attained although it is known where each of them holds.
-
-    Either no way leads to any of the destinations, or no square is in all of them. A clause without full stop.
-    """
+    """Return in words why goals cannot be attained although it is known where each of them holds."""
     both = [set(d.squares.tolist()) for d in where]
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
 
 
 def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
-    """Return the destination of a goal of which it is not known yet where it holds: without squares.
-
-    Parameters
-    ----------
-    missing : in words, what must be known first; a clause without full stop.
-    viewpoints : where that may be seen; () for any place worth a look.
-    """
+    """Return the destination of a goal of which it is not known yet where it holds: without squares."""
     return Destination(np.zeros(0, np.int64), missing, viewpoints)
 
 
@@ -104,22 +90,7 @@ def wall_sides(corner: Corner) -> tuple[int, int]:
 
 
 def destination(goal: Fact, situation: Situation) -> Destination:
-    """Compute the squares on which a goal of place holds for the robot.
-
-    Parameters
-    ----------
-    goal : at, in, beside, through or around with "utak"; or circled, for the squares beside its object.
-
-    Returns
-    -------
-    Destination
-        Without squares, and with what is missing in words, while it is not known where the goal holds.
-
-    Raises
-    ------
-    ValueError
-        When the goal is none of place.
-    """
+    """Compute the squares on which a goal of place holds for the robot."""
     where = goal.args[1]
     if side := corner_side(goal):
         return corner_destination(side, situation)
@@ -135,11 +106,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
 
 
 def corner_destination(side: str, situation: Situation) -> Destination:
-    """Return the convex corner of the known floor furthest towards a side of the robot's own frame: its square.
-
-    Where an unseen room may go further, the corner may be another one: then something is missing. Without the square
-    when it is not known how the floor goes on there.
-    """
+    """Return the convex corner of the known floor furthest towards a side of the robot's own frame: its square."""
     unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
         return unknown
@@ -148,13 +115,7 @@ def corner_destination(side: str, situation: Situation) -> Destination:
 
 
 def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destination | None:
-    """Return what is missing to tell where the corner towards a side is; None when that is known.
-
-    It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there. The Destination
-    has no squares then, but words and viewpoints.
-
-    floor : (rows, columns) bool, the squares that can be reached.
-    """
+    """Return what is missing to tell where the corner towards a side is; None when that is known."""
     model, cost_maps = situation.model, situation.cost_maps
     (column, row), best = situation.corners[side].square, _corner_square(side, situation)
     if not floor[row, column]:
@@ -168,23 +129,13 @@ def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destina
 
 
 def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
-    """Find the unseen rooms that may go further towards a side than all floor that is seen.
-
-    The floor may go on unseen behind a door, also behind one that follows if a doubtful wall is an object; or behind a
-    likely gap; or it is seen where no way leads yet. How far it may go is estimated by the constants of this module.
-
-    One Viewpoint for each such room: first the unreached rooms that a way of some certainty leads to, then frontiers,
-    then gaps. All get the same words for what is not known; for frontiers and gaps the chance in percent that an object
-    comes into sight.
-    """
+    """Find the unseen rooms that may go further towards a side than all floor that is seen."""
     cost_maps, model = situation.cost_maps, situation.model
     known = _furthest_towards(side, _corner_square(side, situation), model)
 
     def short(view: Viewpoint) -> float:
-        """Return how much less far than the known corner a viewpoint lies towards the side, in squares.
-
-        East and north are added, so a diagonal step counts twice; negative when the viewpoint lies further.
-        """
+        """Return how much less far than the known corner a viewpoint lies towards the side, in squares."""
+        # East and north are added, so a diagonal step counts twice; negative when the viewpoint lies further.
         return known - _furthest_towards(side, view.squares, model)
 
     unreached = [view for view in unreached_rooms(cost_maps) if short(view) <= UNREACHED_REACH]
@@ -211,11 +162,9 @@ def _corner_square(side: str, situation: Situation) -> SquareIndices:
 
 
 def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int, int] | None:
-    """Return the least reach and the sideward reach of the unseen floor behind a frontier, in squares.
-
-    Reach counts towards the corner, east and north added. Returns None where the frontier leads to no other room: it is
-    neither in a doorway, nor as narrow as a door, nor in another room than the known corner.
-    """
+    """Return the least reach and the sideward reach of the unseen floor behind a frontier, in squares."""
+    # Returns None where the frontier leads to no other room: it is neither in a doorway, nor as narrow as a door, nor
+    # in another room than the known corner.
     rooms = (situation.rooms, situation.rooms_by_sure_walls)
     if any(one.doorways.ravel()[view.squares].any() for one in rooms):
         return MAX_UNSEEN_REACH, DOOR_SIDEWARD_REACH
@@ -234,10 +183,7 @@ def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
 
 
 def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: WorldModel) -> float:
-    """Estimate how much further towards a corner the floor behind a frontier may go, in squares, east and north added.
-
-    least : the least reach by the chance of the frontier, in squares. sideward : the reach to either side, in squares.
-    """
+    """Estimate how much further towards a corner the floor behind a frontier may go east and north added."""
     promise = max(REACH_PER_PERCENT * (view.chance - MIN_CHANCE), least)
     onward = _onward(side, view.squares, model)
     sideways = math.sqrt(max(2 - onward**2, 0.0))
@@ -245,11 +191,7 @@ def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: 
 
 
 def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
-    """Compute how much further towards a corner one step into the unseen leads, in squares, east and north added.
-
-    The step, one square long, goes in the mean of the directions in which the squares have unseen neighbours (of
-    eight); 1 where they cancel out. From -1.41 (away from the corner) to 1.41.
-    """
+    """Compute how much further towards a corner one step into the unseen leads, in squares, east and north added."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     unseen = np.pad(~model.view.seen, 1, constant_values=True)
     steps = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
@@ -259,19 +201,12 @@ def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
 
 
 def _along(side: str, east: Any, north: Any) -> Any:
-    """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed.
-
-    east, north : numbers, or arrays of one shape, in squares, robot frame; the result is of the same kind and unit.
-    """
+    """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed."""
     return (east if "east" in side else -east) + (north if "north" in side else -north)
 
 
 def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> float:
-    """Return how far the furthest of some squares lies towards a corner of the robot's own frame, in squares.
-
-    Measured from where the robot woke, east and north added, at the centres of the squares; the greater, the nearer to
-    the corner.
-    """
+    """Return how far the furthest of some squares lies towards a corner of the robot's own frame, in squares."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
     east, north = np.column_stack(model.frame.place_to_utak(*points)).T
@@ -279,13 +214,7 @@ def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> f
 
 
 def beside_destination(parameter: str, situation: Situation) -> Destination:
-    """Return the floor that is at most one square away from the object that a parameter means.
-
-    Only squares count that share an edge with one of its squares, if there are any: its outline may end short of the
-    corner of a square. Of these only those count that are at most one square from its believed outline, or nearest.
-    Without squares, and with what is missing, when nothing is known to be the object, or no way leads to it. When no
-    way leads there, the viewpoint is all floor beside the object.
-    """
+    """Return the floor that is at most one square away from the object that a parameter means."""
     node = situation.object_of(parameter)
     if node is None:
         return unknown_destination(situation.nothing_is(parameter))
@@ -312,10 +241,7 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
 
 
 def _room(situation: Situation) -> Destination:
-    """Return the reachable floor of the rooms next to the one in which the robot woke.
-
-    Without squares, and with what is missing and where to look, while no such room is known or is to be relied on.
-    """
+    """Return the reachable floor of the rooms next to the one in which the robot woke."""
     beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
     if viewpoints:
         return unknown_destination(viewpoints[0].what, viewpoints)
@@ -328,12 +254,7 @@ def _room(situation: Situation) -> Destination:
 
 
 def next_room_missing(situation: Situation) -> str:
-    """Return in words why no next room is known: none can be reached, or no neck is a door.
-
-    A clause without full stop. A neck is a narrow place of the floor; a door is one with floor at least twice as wide
-    on both sides. If no neck is a door, the one that comes nearest to that is named, if any is known, with its width in
-    squares and its place in the robot frame.
-    """
+    """Return in words why no next room is known: none can be reached, or no neck is a door."""
     model, opening = situation.model, situation.rooms.opening
     if situation.rooms.sure:
         return "no next room is seen yet that can be reached"
@@ -349,10 +270,7 @@ def next_room_missing(situation: Situation) -> str:
 
 
 def _likely_rooms(situation: Situation) -> list[Viewpoint]:
-    """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors.
-
-    One Viewpoint for each room, in the ascending order of their numbers, with all its reachable squares.
-    """
+    """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors."""
     model = situation.model
     rooms, beyond = situation.likely_next_rooms(model.frame.origin)
     beyond &= situation.cost_maps.floor
@@ -363,42 +281,25 @@ def _likely_rooms(situation: Situation) -> list[Viewpoint]:
 
 
 def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
-    """Return the numbers of the rooms that have squares of a mask, in ascending order.
-
-    Number 0 stands for floor that is part of no room, 1 for the room in which the robot woke.
-    """
+    """Return the numbers of the rooms that have squares of a mask, in ascending order."""
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
 
 def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...]:
-    """Find where a door may come into sight: at possible doors, and at floor that is seen and cannot be reached yet.
-
-    Those of doors come first. tried : whether likely doors are left out, because the robot goes through them anyway.
-    """
+    """Find where a door may come into sight: at possible doors, and at floor that is seen and cannot be reached yet."""
     doors = [door for door in situation.rooms.doors if not (tried and door.likely)]
     return (*door_jambs(situation.cost_maps, doors), *unreached_rooms(situation.cost_maps))
 
 
 def around_corner_destination(situation: Situation) -> Destination:
-    """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between.
-
-    Without squares, and with what is missing, when no such floor can be reached.
-    """
+    """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between."""
     model = situation.model
     squares = np.flatnonzero(hidden_from(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
     return Destination(squares) if len(squares) else unknown_destination("no corner is seen yet that hides a place")
 
 
 def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
-    """Compute the squares none of whose corners is seen from a point past a verge, the squares that block the sight.
-
-    (rows, columns) bool on the arrays of the view, as `verge`; squares of the verge may be hidden, too. Lines of sight
-    are sampled at LINE_SAMPLES places.
-
-    Parameters
-    ----------
-    place : a point (x, y) of the map frame, in squares.
-    """
+    """Compute the squares none of whose corners is seen from a point past a verge, the squares that block the sight."""
     height, width = verge.shape
     x, y = place[0] - model.view.west, place[1] - model.view.south
     corners = np.stack(np.meshgrid(np.arange(width + 1), np.arange(height + 1)), axis=-1).astype(float)

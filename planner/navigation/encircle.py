@@ -17,24 +17,12 @@ from planner.screen.projection import UNSEEN_LEVEL, CostMaps
 
 
 def winding_number(track: Sequence[XY], node: Node) -> int:
-    """Compute how many turns a track makes around an object, counter-clockwise positive; a whole number.
-
-    The track, points (x, y) of the map frame in squares, is closed by its first point.
-    """
+    """Compute how many turns a track makes around an object, counter-clockwise positive; a whole number."""
     return crossing_number(_centred([*track, track[0]]), encircled_point(node))
 
 
 def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
-    """Find the routes that complete one turn around an object and end where the track began, by the sense of rotation.
-
-    The sense is 1 for counter-clockwise, -1 for clockwise; one without a route has no key. All are of the surest
-    certainty level at which there is one. The routes keep off the object's own squares; their length is that of the
-    diagonal steps, not of the squares between.
-
-    Parameters
-    ----------
-    track : where the robot has been since it began to encircle the object, points (x, y) of the map frame in squares.
-    """
+    """Find the routes that complete one turn around an object and end where it began, by the sense of rotation."""
     model = cost_maps.model
     x, y = encircled_point(node)
     about = (x - model.view.west, y - model.view.south)
@@ -65,11 +53,7 @@ def _centred(track: Sequence[XY]) -> Floats:
 
 
 def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
-    """Make an edge-connected route of squares connected by edge or corner: diagonal steps get a square between.
-
-    That square lies in the column of the later square and the row of the former. The length, in squares, is that of the
-    given squares, at least two; the clearance is assumed to be 0.5 squares.
-    """
+    """Make an edge-connected route of squares connected by edge or corner: diagonal steps get a square between."""
     path = [squares[0]]
     for column, row in squares[1:]:
         if column != path[-1][0] and row != path[-1][1]:
@@ -80,11 +64,7 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
 
 
 def encircled_point(node: Node) -> XY:
-    """Return a point (x, y) within the object, in squares, map frame.
-
-    It is the centre of that square of the object which is nearest to the mean of its squares: of several the
-    westernmost, then the southernmost.
-    """
+    """Return a point (x, y) within the object, in squares, map frame."""
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))
     return column + 0.5, row + 0.5

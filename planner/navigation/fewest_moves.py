@@ -34,22 +34,13 @@ class FewestMoves:
         self._turns: dict[tuple[str, bytes], Square | None] = {}  # by the kind and the squares of the subgoal
 
     def priced(self, subgoals: Sequence[Subgoal]) -> list[Subgoal]:
-        """Return the subgoals, in order, with prices by their number of moves, in squares of way.
-
-        With the cost of the way there, the price then comes to MOVE_COST for each move and SQUARE_COST for each square
-        of way. A subgoal that one move reaches keeps only the squares that it reaches; one that cannot be reached stays
-        as it is.
-        """
+        """Return the subgoals, in order, with prices by their number of moves, in squares of way."""
         return [self._priced(subgoal) for subgoal in subgoals]
 
     def way(self, subgoal: Subgoal) -> PlannedRoute | None:
-        """Return the first move to a subgoal that one or two moves reach, as a route of two squares.
-
-        These are the robot's square and where the move ends, (column, row) on the arrays of the view; they need not be
-        neighbours. The length is straight, in squares; the clearance is not computed: 0; the level is 0. Returns None
-        for all other subgoals, and when the robot is there. Of the squares that one move reaches it is the nearest;
-        with two moves, the route leads to the turn between them only.
-        """
+        """Return the first move to a subgoal that one or two moves reach, as a route of two squares."""
+        # These are the robot's square and where the move ends, (column, row) on the arrays of the view; they need not
+        # be neighbours. Returns None for all other subgoals, and when the robot is there.
         here, near = self._cost_maps.here, self._met(subgoal)
         if len(near):
             there: Square | None = self._square(int(near[self._cost_maps.far(near).argmin()]))
@@ -59,10 +50,7 @@ class FewestMoves:
 
     @property
     def _far(self) -> NDArray[np.int32]:
-        """The distance of each square from the robot, in fifths of squares; -1 where no way is sure.
-
-        (n,) int32 by flat index (row * columns + column) on the arrays of the view.
-        """
+        """The distance of each square from the robot, in fifths of squares; -1 where no way is sure."""
         return self._cost_maps.distances[0].ravel()
 
     def _priced(self, subgoal: Subgoal) -> Subgoal:
@@ -91,21 +79,16 @@ class FewestMoves:
         return self._reached[key]
 
     def _turning(self, subgoal: Subgoal) -> Square | None:
-        """Return the square where the first of two moves to a subgoal ends; None when two moves do not reach it.
-
-        (column, row) on the arrays of the view; remembered by the kind and the squares of the subgoal.
-        """
+        """Return the square where the first of two moves to a subgoal ends; None when two moves do not reach it."""
         key = (subgoal.kind, subgoal.squares.tobytes())
         if key not in self._turns:
             self._turns[key] = self._best_turn(subgoal)
         return self._turns[key]
 
     def _best_turn(self, subgoal: Subgoal) -> Square | None:
-        """Search the turn of least way, less the worth of the unseen squares in sight from it.
-
-        Returns the square (column, row) where the first of two straight moves ends; None when two moves do not reach
-        any of at most MAX_TRIED_SQUARES squares of the subgoal that a sure way leads to.
-        """
+        """Search the turn of least way, less the worth of the unseen squares in sight from it."""
+        # None when two moves do not reach any of at most MAX_TRIED_SQUARES squares of the subgoal that a sure way leads
+        # to.
         cost_maps, passable = self._cost_maps, CARRYING_PACE.passable(self._cost_maps, subgoal.kind)
         sure = subgoal.squares[(self._far[subgoal.squares] >= 0) & passable.ravel()[subgoal.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]

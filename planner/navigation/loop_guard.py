@@ -22,10 +22,7 @@ StateKey = tuple[object, ...]
 
 
 class LoopGuard:
-    """Remembers which command was given in which state of belief, and which subgoals led in a loop.
-
-    A loop is the same command in the same state. Loops are counted by the squares of subgoals, in the map frame.
-    """
+    """Remembers which command was given in which state of belief, and which subgoals led in a loop."""
 
     def __init__(self) -> None:
         """Remember no command and no loop yet."""
@@ -34,11 +31,7 @@ class LoopGuard:
         self._known: StateKey = ()  # the state of knowledge in which the loops were counted
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
-        """Return whether a command was given before at this place with the same knowledge, and remember it.
-
-        The same are the robot's place and the command, to STATE_DIGITS decimals, what it holds, and what is known (see
-        `_knowledge`).
-        """
+        """Return whether a command was given before at this place with the same knowledge, and remember it."""
         x, y = model.place
         values = tuple(round(v, STATE_DIGITS) if isinstance(v, float) else v for v in astuple(command))
         state = (round(x, STATE_DIGITS), round(y, STATE_DIGITS), model.held, _knowledge(model))
@@ -52,11 +45,8 @@ class LoopGuard:
         self._loops.update(squares)
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
-        """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS.
-
-        Prices are in squares of way. The loops of a subgoal are the most that were counted for one of its squares. All
-        loops are forgotten as soon as more is known. The rest stays in order; `subgoals` is not changed.
-        """
+        """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS."""
+        # The rest stays in order;
         known = _knowledge(model)
         if known != self._known:
             self._known = known
@@ -72,11 +62,7 @@ class LoopGuard:
 
 
 def _knowledge(model: WorldModel) -> StateKey:
-    """Return what changes when something new is known, as a tuple to be compared.
-
-    In this order: how many squares were seen, how many are settled, how many stopped a motion, and for each object that
-    was moved or is stuck its name, how often it is stuck, and the west and south square of its patch (map frame).
-    """
+    """Return what changes when something new is known, as a tuple to be compared."""
     settled = int((model.view.state != OPEN).sum())
     things = tuple(
         (node.name, node.stuck, node.patch.west, node.patch.south) for node in model.objects if node.moved or node.stuck

@@ -27,21 +27,15 @@ MIN_SHARED = 0.6  # a route with more than this share of its squares in common w
 
 
 class PlannedRoute(NamedTuple):
-    """A route that geometry found, on the arrays of the view.
+    """A route that geometry found, on the arrays of the view."""
 
-    Attributes
-    ----------
-    squares : (column, row), edge-connected and free, from the robot's square to the goal, both included. A single
-        straight move has just its two ends instead (FewestMoves.way).
-    length : in squares.
-    clearance : the least distance from the route to a square that is not free, in squares; 0 where it was not computed.
-    level : the certainty level of its squares, 0 the surest (planner.screen.projection).
-    """
-
+    # (column, row), edge-connected and free, from the robot's square to the goal, both included. A single straight move
+    # has just its two ends instead (FewestMoves.way).
     squares: tuple[Square, ...]
-    length: float
+    length: float  # in squares
+    # The least distance from the route to a square that is not free, in squares; 0 where it was not computed
     clearance: float
-    level: int
+    level: int  # the certainty level of its squares, 0 the surest (planner.screen.projection).
 
 
 # Points (x, y) from centre to centre in the view frame, length and clearance, all in squares.
@@ -51,21 +45,14 @@ PathFinder = Callable[[Bools, Square, Square], list[FoundLine]]
 
 
 def _by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
-
-    A topological class holds the routes that pass the same obstacles on the same sides; a tight route is the shortest
-    of its class. The skeleton are the lines of greatest clearance; the pathgraph joins their crossings. At most
-    MAX_ROUTES, the shortest first.
-    """
+    """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton."""
     routes = Screen(free).routes(_centre(start), _centre(goal), k=MAX_ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
 def _single(find: Callable[..., Floats | None], free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the only route of a path-finder, with the clearance of the squares that it touches; [] for none.
-
-    find : returns the corners (x, y) of the route from point to point over free squares, (n, 2); None for no route.
-    """
+    """Find the only route of a path-finder, with the clearance of the squares that it touches; [] for none."""
+    # None for no route.
     points = find(free, _centre(start), _centre(goal))
     if points is None:
         return []
@@ -85,22 +72,7 @@ PATH_FINDERS: Mapping[str, PathFinder] = {
 
 
 def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:
-    """Find topologically distinct routes to the nearest reachable square of `goals`, the shortest first.
-
-    Distinct routes pass some obstacle on different sides. The nearest is by the length of the way at that level; of
-    equals the first in `goals`. At most MAX_ROUTES with the skeleton, else one. A single route of one square when the
-    robot is there.
-
-    Parameters
-    ----------
-    level : the certainty level of the squares that may be crossed, 0 the surest.
-    finder : a key of PATH_FINDERS: skeleton, visibility or grid.
-
-    Raises
-    ------
-    ValueError
-        When no goal can be reached at the level.
-    """
+    """Find topologically distinct routes to the nearest reachable square of `goals`, the shortest first."""
     free, distances = cost_maps.free(level), cost_maps.distances[level].ravel()
     reached = goals[distances[goals] >= 0]
     row, column = divmod(int(reached[np.argmin(distances[reached])]), free.shape[1])
@@ -118,22 +90,9 @@ def choose_route(
     forbidden: frozenset[str],
     prices: Mapping[str, float] = NO_DOOR_PRICES,
 ) -> PlannedRoute | None:
-    """Choose one of some routes, by planner/asp/routes.lp; None when every route leads through a forbidden door.
-
-    It is the one of least length, with costs added for risk, for a clearance below one square, and for a switch from
-    the route before; of equals the first offered.
-
-    The facts for the encoding, each a string without a full stop: `not_through(door)`; for each route, numbered from 0,
-    `route(number, length, clearance, risk)` with length and clearance in tenths of squares and the risk in hundredths
-    of the expected number of occupied squares; `through(number, door)`; `door_price(door, price)`, a length;
-    `last(number)` for a route that continues the one before.
-
-    Parameters
-    ----------
-    before : the squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
-    forbidden : the names of the doors that the task forbids.
-    prices : by the name of a door: what users' rules add to a pass through it, in squares of way.
-    """
+    """Choose one of some routes, by planner/asp/routes.lp; None when every route leads through a forbidden door."""
+    # It is the one of least length, with costs added for risk, for a clearance below one square, and for a switch from
+    # the route before; of equals the first offered.
     facts = [f"not_through({door})" for door in sorted(forbidden)]
     facts += [f"door_price({door},{round(TENTHS_PER_SQUARE * price)})" for door, price in sorted(prices.items())]
     for number, route in enumerate(offered):
@@ -150,11 +109,7 @@ def choose_route(
 
 
 def _corners_in_robot_frame(route: PlannedRoute, model: WorldModel) -> list[list[float]]:
-    """Return the first square of a route, those where it changes its direction, and the last one.
-
-    As [east, north] of their centres, in squares, robot frame, with two decimals. `route` lies on the arrays of the
-    view of `model`.
-    """
+    """Return the first square of a route, those where it changes its direction, and the last one."""
     squares = np.array(route.squares)
     steps = np.diff(squares, axis=0)
     turns = [0, *(np.flatnonzero((steps[1:] != steps[:-1]).any(axis=1)) + 1).tolist(), len(squares) - 1]
@@ -163,10 +118,7 @@ def _corners_in_robot_frame(route: PlannedRoute, model: WorldModel) -> list[list
 
 
 def leads_through(route: PlannedRoute, door: Door) -> bool:
-    """Return whether a route passes the neck of a door, also where it comes back.
-
-    Both are in the view frame; the route counts as the line through the centres of its squares.
-    """
+    """Return whether a route passes the neck of a door, also where it comes back."""
     return went_through(np.array(route.squares) + 0.5, door)
 
 

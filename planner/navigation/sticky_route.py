@@ -36,15 +36,9 @@ class StickyRoute:
         return frozenset(np.flatnonzero(model.squares(self._subgoal)).tolist())
 
     def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:
-        """Return the rest of the route from the robot's square on, if it still leads to a subgoal over free squares.
-
-        Its length is its number of squares, its clearance is not computed: 0. None when the robot is not on the route
-        or at its end, when it ends at no square of the subgoal, or when a square ahead is not free at the level.
-
-        Parameters
-        ----------
-        level : the certainty level at which the subgoal can be reached; another one than the route's ends the route.
-        """
+        """Return the rest of the route from the robot's square on, if it still leads to a subgoal over free squares."""
+        # None when the robot is not on the route or at its end, when it ends at no square of the subgoal, or when a
+        # square ahead is not free at the level.
         path = self.path(model)
         if level != self._level or cost_maps.here not in path:
             return None

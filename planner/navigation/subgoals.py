@@ -13,38 +13,18 @@ TENTHS_PER_SQUARE = 10  # the encodings count lengths and costs in tenths of squ
 
 
 class Subgoal(NamedTuple):
-    """A place to go to, and the reason.
+    """A place to go to, and the reason."""
 
-    Attributes
-    ----------
-    kind : a SubgoalKind, or its value.
-    squares : flat indices (row * columns + column) on the arrays of the view, (n,) int64; any of them will do.
-    what : the reason, in words.
-    chance : percent of belief that it leads to what is looked for.
-    price : squares of way that it costs besides the way there; negative for a bonus.
-    """
-
-    kind: str
+    kind: str  # a SubgoalKind, or its value
+    # Flat indices (row * columns + column) on the arrays of the view, (n,) int64; any of them will do
     squares: SquareIndices
-    what: str
-    chance: int = 100
-    price: float = 0.0
+    what: str  # the reason, in words
+    chance: int = 100  # percent of belief that it leads to what is looked for
+    price: float = 0.0  # squares of way that it costs besides the way there; negative for a bonus
 
 
 def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int]) -> Subgoal | None:
-    """Choose the subgoal to pursue, by planner/asp/aims.lp; None when none can be reached.
-
-    The facts for the encoding, each a string without a full stop, for each subgoal that can be reached, numbered from
-    0: `aim(number, kind, cost)` in tenths of squares, `chance(number, percent)`, and `last(number)` for one that
-    continues the last one. One of kind ATTAIN comes before all others; then the least cost divided by the chance, plus
-    three squares for a switch to another subgoal; of equals the first. The cost is that of the way plus the price, with
-    an extra cost for some kinds.
-
-    Parameters
-    ----------
-    last : the squares (flat indices on the arrays of this view) of the subgoal chosen last time; empty for none. A
-        subgoal that shares one of them continues it.
-    """
+    """Choose the subgoal to pursue, by planner/asp/aims.lp; None when none can be reached."""
     facts = []
     for number, subgoal in enumerate(subgoals):
         reached = cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None

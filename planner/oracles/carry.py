@@ -47,18 +47,11 @@ class Certainty(StrEnum):
 
 
 class FloorKind(StrEnum):
-    """The floors on which a way is looked for, the surest first.
+    """The floors on which a way is looked for, the surest first."""
 
-    Attributes
-    ----------
-    SURE : squares that are surely free.
-    LIKELY : those, and the ones that optimistic planning assumes to be free.
-    POSSIBLE : all squares that are not known to be occupied.
-    """
-
-    SURE = "sure"
-    LIKELY = "likely"
-    POSSIBLE = "possible"
+    SURE = "sure"  # squares that are surely free
+    LIKELY = "likely"  # those, and the ones that optimistic planning assumes to be free
+    POSSIBLE = "possible"  # all squares that are not known to be occupied
 
     @property
     def certainty(self) -> Certainty:
@@ -67,23 +60,16 @@ class FloorKind(StrEnum):
 
 
 class OracleAnswer(NamedTuple):
-    """An answer of the oracle.
+    """An answer of the oracle."""
 
-    Attributes
-    ----------
-    certainty : how sure the way is.
-    commands : about how many commands it takes; 0 when it is refuted.
-    after : the state that it leads to; None when it is refuted.
-    plan : the way of an object, in squares, view frame moved by the margin of the floors; None for the robot alone,
-        and when it is refuted.
-    avoid : grasps of the object as it lay before, as (x, y) of the robot from its middle, that the plan does not use:
-        with them the object would shut the robot in at its place.
-    """
-
-    certainty: Certainty
-    commands: int = 0
-    after: TableState | None = None
+    certainty: Certainty  # how sure the way is
+    commands: int = 0  # about how many commands it takes; 0 when it is refuted
+    after: TableState | None = None  # the state that it leads to; None when it is refuted
+    # The way of an object, in squares, view frame moved by the margin of the floors; None for the robot alone, and when
+    # it is refuted
     plan: CarryingPlan | None = None
+    # Grasps of the object as it lay before, as (x, y) of the robot from its middle, that the plan does not use: with
+    # them the object would shut the robot in at its place
     avoid: tuple[XY, ...] = ()
 
 
@@ -96,16 +82,10 @@ class _Carrying(NamedTuple):
 
 @dataclass(frozen=True)
 class Floors:
-    """The squares that may be used, without any thing of the problem, by the kind of floor; all with a margin.
+    """The squares that may be used, without any thing of the problem, by the kind of floor; all with a margin."""
 
-    Attributes
-    ----------
-    by_kind : (rows, columns) bool each.
-    margin : squares that were added on each side of the arrays of the view.
-    """
-
-    by_kind: Mapping[FloorKind, Bools]
-    margin: int
+    by_kind: Mapping[FloorKind, Bools]  # (rows, columns) bool each
+    margin: int  # squares that were added on each side of the arrays of the view
 
 
 def floors_of(problem: TaskProblem, situation: Situation) -> Floors:
@@ -137,12 +117,7 @@ def _margin_needed(problem: TaskProblem, shape: tuple[int, ...]) -> int:
 
 
 class CarryOracle:
-    """Answers whether objects can be brought to places; remembers its answers for one situation.
-
-    Attributes
-    ----------
-    asked : how many times geometry was asked.
-    """
+    """Answers whether objects can be brought to places; remembers its answers for one situation."""
 
     def __init__(
         self,
@@ -153,16 +128,7 @@ class CarryOracle:
         turn: float = 1.0,
         on_lattice: bool = False,
     ) -> None:
-        """Make an oracle for a situation.
-
-        Parameters
-        ----------
-        pull : whether a held object may be pulled.
-        avoid : the grasps of each object that failed, as in `plan_carrying`; none by default.
-        turn : how many commands a turn counts for.
-        on_lattice : whether only ways by whole squares and quarter turns are looked for, which is much faster. What is
-            refuted then may be possible otherwise.
-        """
+        """Make an oracle for a situation."""
         self.asked = 0
         self.floors = floors_of(problem, situation)
         self._problem, self._situation = problem, situation
@@ -175,10 +141,7 @@ class CarryOracle:
         return self._plan(state, name, end, FloorKind.POSSIBLE, shut, anywhere=True).status != "found"
 
     def refusal(self, state: TableState, name: str, end: End, shut: frozenset[str]) -> str:
-        """Return in words what geometry found where an object cannot be brought to an end in a state; see `bring`.
-
-        A passage that is too narrow has its place in the robot frame, its width and what is missing, in squares.
-        """
+        """Return in words what geometry found where an object cannot be brought to an end in a state; see `bring`."""
         refused = self._plan(state, name, end, FloorKind.POSSIBLE, shut)
         by = "by whole squares and quarter turns, " if self._on_lattice else ""
         if refused.status == "found" or refused.passage is None:
@@ -189,12 +152,7 @@ class CarryOracle:
         return f"{wide} {how_narrow(refused)}"
 
     def is_refuted(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> bool:
-        """Return whether an object cannot be brought to an end in a state, as `bring` would say; this asks for less.
-
-        Parameters
-        ----------
-        state, name, end, place, shut : as for `bring`.
-        """
+        """Return whether an object cannot be brought to an end in a state, as `bring` would say; this asks for less."""
         if self._plan(state, name, end, FloorKind.POSSIBLE, shut).status == "found":
             return False
         return self.bring(state, name, end, place, shut).after is None
@@ -202,27 +160,14 @@ class CarryOracle:
     def bring(
         self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
     ) -> OracleAnswer:
-        """Return whether an object can be brought to an end in a state, and the state that this leads to.
-
-        Parameters
-        ----------
-        end : where it shall lie, meant for the object as it lies now, in squares, view frame.
-        place : the name of that place.
-        shut : the names of doors that are not passed.
-        """
+        """Return whether an object can be brought to an end in a state, and the state that this leads to."""
         key = (_key(state), name, place, shut)
         if key not in self._answers:
             self._answers[key] = self._bring(state, name, end, place, shut)
         return self._answers[key]
 
     def arrive(self, state: TableState, stand: Any, shut: frozenset[str] = frozenset()) -> OracleAnswer:
-        """Return whether the robot can walk to some squares in a state, and the state that this leads to.
-
-        Parameters
-        ----------
-        stand : flat indices of squares (row * columns + column) on the arrays of the view.
-        shut : the names of doors that are not passed.
-        """
+        """Return whether the robot can walk to some squares in a state, and the state that this leads to."""
         columns = self._situation.model.labels.shape[1]
         rows_of, columns_of = np.divmod(stand, columns)
         for kind in FloorKind:
@@ -252,10 +197,7 @@ class CarryOracle:
         return OracleAnswer(certainty, found.plan.commands, after, plan=found.plan, avoid=found.avoid)
 
     def _free_handed(self, state: TableState, name: str, end: End, kind: FloorKind, shut: frozenset[str]) -> _Carrying:
-        """Return a plan after which the object does not shut the robot in; any plan where there is no such plan.
-
-        A robot that pulls a thing into a dead end, or into what may be one, stands behind it at last.
-        """
+        """Return a plan after which the object does not shut the robot in; any plan where there is no such plan."""
         plan = self._plan(state, name, end, kind, shut)
         if not plan.legs:
             return _Carrying(plan)
@@ -275,13 +217,8 @@ class CarryOracle:
         kind: FloorKind,
         shut: frozenset[str],
     ) -> tuple[XY, ...]:
-        """Return the grasps of an object that end off most of the floor, once it lies; () if the plan's own does not.
-
-        As (x, y) of the robot from the middle of the object as it lay before the plan. Floor that is not surely free
-        counts only where the plan crosses it: what is hoped to lead on there may be a dead end.
-
-        before, after : the states before and after the plan. kind, shut : the floor of the plan.
-        """
+        """Return the grasps of an object that end off most of the floor, once it lies."""
+        # () if the plan's own does not.
         margin = self.floors.margin
         square = int(after.robot[1]) + margin, int(after.robot[0]) + margin  # row, column
         sure = self._free(after, None, FloorKind.SURE, shut)
@@ -312,13 +249,7 @@ class CarryOracle:
         inner: tuple[XY, ...] = (),
         anywhere: bool = False,
     ) -> CarryingPlan:
-        """Return what geometry finds over a kind of floor without some grasps, in the frame with the margin.
-
-        Two kinds of floor may be the same squares; geometry is asked once for them.
-
-        inner : further grasps that are not used.
-        anywhere : whether the robot may come to the object wherever it stands.
-        """
+        """Return what geometry finds over a kind of floor without some grasps, in the frame with the margin."""
         lying, margin = state.things[name], self.floors.margin
         outline = Translate(margin, margin).carry(lying.outline)
         free = self._free(state, name, kind, shut)
@@ -366,13 +297,7 @@ class CarryOracle:
     def _free(
         self, state: TableState, name: str | None, kind: FloorKind, shut: frozenset[str], alone: bool = False
     ) -> Bools:
-        """Return the squares that other things of a state, shut doors and forbidden regions leave free.
-
-        name : the thing that is carried; None for none.
-        kind : the floor.
-        shut : the names of doors that are not passed.
-        alone : whether the squares are those for the robot without the thing.
-        """
+        """Return the squares that other things of a state, shut doors and forbidden regions leave free."""
         free = self.floors.by_kind[kind].copy()
         rows, columns = free.shape
         margin = self.floors.margin

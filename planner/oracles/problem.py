@@ -19,24 +19,14 @@ ANYWHERE = "anywhere"  # in place of an origin: a way that was refuted from two 
 
 @dataclass(frozen=True)
 class Lying:
-    """The pose of an object in a state, and the place that it is at.
+    """The pose of an object in a state, and the place that it is at."""
 
-    Attributes
-    ----------
-    outline : shapely Polygon, in squares, view frame.
-    pose : how it was moved since now: turned about its centroid, then translated.
-    place : the name of its place.
-    """
-
-    outline: Any
-    pose: Pose
-    place: str = HERE
+    outline: Any  # shapely Polygon, in squares, view frame
+    pose: Pose  # how it was moved since now: turned about its centroid, then translated
+    place: str = HERE  # the name of its place
 
     def reach(self, end: End) -> End:
-        """Return an end that is meant for the object as it lies now, for the object as it lies in this state.
-
-        Only a pose (At) is relative to how the object lies; other ends are returned unchanged.
-        """
+        """Return an end that is meant for the object as it lies now, for the object as it lies in this state."""
         if not isinstance(end, At):
             return end
         x, y, degrees = end.pose
@@ -45,20 +35,12 @@ class Lying:
 
 @dataclass(frozen=True)
 class TableState:
-    """A predicted state of the table: all things of a problem, and the robot.
+    """A predicted state of the table: all things of a problem, and the robot."""
 
-    Attributes
-    ----------
-    things : how each object lies, by its name.
-    robot : the place (x, y) of the robot, in squares, view frame.
-    held : the name of the object in the robot's hand; None for none.
-    last : the name of the object that was put down last; "start" while none was.
-    """
-
-    things: Mapping[str, Lying]
-    robot: XY
-    held: str | None = None
-    last: str = "start"
+    things: Mapping[str, Lying]  # how each object lies, by its name
+    robot: XY  # the place (x, y) of the robot, in squares, view frame
+    held: str | None = None  # the name of the object in the robot's hand; None for none
+    last: str = "start"  # the name of the object that was put down last; "start" while none was
 
     def after(self, name: str, lying: Lying, robot: XY) -> "TableState":
         """Return the state after an object was brought somewhere and released, and where the robot stands then."""
@@ -71,24 +53,15 @@ class TableState:
 
 @dataclass(frozen=True)
 class PlacedGoal:
-    """A goal of the stage, and the places where it holds.
+    """A goal of the stage, and the places where it holds."""
 
-    Attributes
-    ----------
-    name : g1, g2, ... in the order of the task; w1, w2, ... for wishes.
-    words : the goal as the task states it; those of the robot joined by "and".
-    subject : the object that it is about as the parameters are bound, or ROBOT.
-    holds : whether it holds now.
-    weight : about how many commands it may cost, for a wish; None for a goal that must hold.
-    parameter : the parameter of the task that it is about, whose meaning is part of the plan; "" where `subject` is
-        what it is about, whatever else may be meant.
-    """
-
-    name: str
-    words: str
-    subject: str
-    holds: bool
-    weight: int | None = None
+    name: str  # g1, g2, ... in the order of the task; w1, w2, ... for wishes.
+    words: str  # the goal as the task states it; those of the robot joined by "and"
+    subject: str  # the object that it is about as the parameters are bound, or ROBOT
+    holds: bool  # whether it holds now
+    weight: int | None = None  # about how many commands it may cost, for a wish; None for a goal that must hold
+    # The parameter of the task that it is about, whose meaning is part of the plan; "" where `subject` is what it is
+    # about, whatever else may be meant
     parameter: str = ""
 
     @property
@@ -99,41 +72,25 @@ class PlacedGoal:
 
 @dataclass(frozen=True)
 class TaskProblem:
-    """The things, places and goals for which a task plan is made.
+    """The things, places and goals for which a task plan is made."""
 
-    Attributes
-    ----------
-    nodes : the objects that may be carried, by name, in the order of the model; their outlines are known.
-    goals : the goals of the stage, in the order of the task, and then its wishes.
-    places : by object and name of a place: the end there, meant for the object as it lies now. ROBOT has none here.
-    fulfils : by object (or ROBOT) and name of a place: the names of the goals that hold there, if they are about that
-        object.
-    stands : by the name of a place of the robot: flat indices of squares (row * columns + column) on the arrays of the
-        view.
-    state : how everything is now.
-    open : whether it is open where exactly some goal holds, so that it may hold elsewhere, too.
-    meanings : by parameter of the task, where a plan may choose: the objects that it may mean, the one that it is bound
-        to first.
-    waiting : the names of the goals of which it is not known what they are about, or where they hold: they have no
-        places.
-    """
-
+    # The objects that may be carried, by name, in the order of the model; their outlines are known
     nodes: Mapping[str, Node]
-    goals: tuple[PlacedGoal, ...]
+    goals: tuple[PlacedGoal, ...]  # the goals of the stage, in the order of the task, and then its wishes
+    # By object and name of a place: the end there, meant for the object as it lies now. ROBOT has none here.
     places: Mapping[tuple[str, str], End]
+    # By object (or ROBOT) and name of a place: the names of the goals that hold there, if they are about that object
     fulfils: Mapping[tuple[str, str], tuple[str, ...]]
+    # By the name of a place of the robot: flat indices of squares (row * columns + column) on the arrays of the view
     stands: Mapping[str, Any]
-    state: TableState
-    open: bool = False
+    state: TableState  # how everything is now
+    open: bool = False  # whether it is open where exactly some goal holds, so that it may hold elsewhere, too
+    # By parameter of the task, where a plan may choose: the objects that it may mean, the one that it is bound to first
     meanings: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    # The names of the goals of which it is not known what they are about, or where they hold: they have no places
     waiting: tuple[str, ...] = ()
 
     def places_meant(self, meanings: Mapping[str, str]) -> frozenset[tuple[str, str]]:
-        """Return the places of goals, by object and name, of what the goals are about.
-
-        Parameters
-        ----------
-        meanings : the object that each parameter of the task means; what it is bound to where it is missing.
-        """
+        """Return the places of goals, by object and name, of what the goals are about."""
         about = {goal.name: meanings.get(goal.parameter, goal.subject) for goal in self.goals}
         return frozenset(key for key in self.places if key[0] in {about[goal] for goal in self.fulfils.get(key, ())})

@@ -29,19 +29,12 @@ MAX_TESTED_SPOTS = 400  # places on ways of others of which it is tested whether
 
 
 class KeptWay(NamedTuple):
-    """A way of another object that must stay possible, not turned.
+    """A way of another object that must stay possible, not turned."""
 
-    Attributes
-    ----------
-    offsets : (n, 2), its squares (row, column) relative to its lowest row and column.
-    start, end : its lowest (row, column) where it lies, and where it shall lie.
-    floor : (rows, columns) bool, the squares over which it may be pushed when nothing else lies there.
-    """
-
-    offsets: Ints
-    start: tuple[int, int]
+    offsets: Ints  # (n, 2), its squares (row, column) relative to its lowest row and column
+    start: tuple[int, int]  # its lowest (row, column) where it lies, and where it shall lie
     end: tuple[int, int]
-    floor: Bools
+    floor: Bools  # (rows, columns) bool, the squares over which it may be pushed when nothing else lies there
 
     @property
     def is_open(self) -> bool:
@@ -50,21 +43,12 @@ class KeptWay(NamedTuple):
 
 
 def is_way_left(fits: Bools, start: tuple[int, int], end: tuple[int, int]) -> bool:
-    """Return whether an object can be pushed from one place to another one.
-
-    Parameters
-    ----------
-    fits : (rows, columns) bool, where its lowest row and column may be.
-    start, end : (row, column).
-    """
+    """Return whether an object can be pushed from one place to another one."""
     return bool(fits[start] and fits[end] and reach(fits, start[1], start[0])[end] != GEODESIC_UNREACHED)
 
 
 def kept_way_of(start: Any, end: Any, floor: Bools) -> KeptWay | None:
-    """Return the way of an object from an outline to another one; None when it covers other squares there.
-
-    floor : the squares over which it may be pushed.
-    """
+    """Return the way of an object from an outline to another one; None when it covers other squares there."""
     rows, columns = floor.shape
     covered = [np.argwhere(squares(outline, columns, rows)) for outline in (start, end)]
     if not all(len(one) for one in covered):
@@ -79,12 +63,7 @@ def kept_way_of(start: Any, end: Any, floor: Bools) -> KeptWay | None:
 def spots(
     outline: Any, floor: Bools, around: Bools, keep_clear: Bools, kept: Sequence[KeptWay] = ()
 ) -> list[tuple[int, int]]:
-    """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart.
-
-    Places off `keep_clear`, the squares that others need, with a free square all round come first: the nearest one,
-    then those that are furthest from the ones chosen before; then other places off `keep_clear`; then those on it past
-    which others find another way, the ways `kept`; at last any on it, chosen likewise.
-    """
+    """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart."""
     usable = _usable(outline, floor, around)
     if usable is None:
         return []
@@ -103,10 +82,8 @@ def spots(
 
 
 def corner_spots(outline: Any, floor: Bools, around: Bools) -> list[tuple[int, int]]:
-    """Return translations (columns, rows) of an object to the corners of a floor: there it leaves most room for others.
-
-    The corner that is furthest to be pushed to comes first. At most four.
-    """
+    """Return translations (columns, rows) of an object to the corners of a floor."""
+    # There it leaves most room for others.
     usable = _usable(outline, floor, around)
     if usable is None or not usable.mask.any():
         return []
@@ -116,11 +93,9 @@ def corner_spots(outline: Any, floor: Bools, around: Bools) -> list[tuple[int, i
 
 
 def turned_corner_outlines(outline: Any, floor: Bools) -> list[Any]:
-    """Return an object as it lies, turned by quarters, in the corners of a floor; outlines in the frame of the arrays.
-
-    At most four for each way in which the object then lies otherwise than now. Whether it can be brought there is not
-    asked.
-    """
+    """Return an object as it lies, turned by quarters, in the corners of a floor."""
+    # Outlines in the frame of the arrays.
+    # At most four for each way in which the object then lies otherwise than now.
     rows, columns = floor.shape
     found, shapes = list[Any](), set[bytes]()
     for quarters in range(4):  # about the middle of a square, as the robot turns it
@@ -144,11 +119,7 @@ def _corners_of(mask: Bools) -> set[tuple[int, int]]:
 
 
 class _Usable(NamedTuple):
-    """The places of an object on a floor, each by the lowest row and column of its squares.
-
-    offsets : (n, 2) rows and columns of its squares from there. passable : the squares over which it may be pushed.
-    far : how far it is pushed to each place. mask : the places but its own. home : its own, (row, column).
-    """
+    """The places of an object on a floor, each by the lowest row and column of its squares."""
 
     offsets: Ints
     passable: Bools
@@ -176,11 +147,7 @@ def _usable(outline: Any, floor: Bools, around: Bools) -> _Usable | None:
 
 
 def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, kept: Sequence[KeptWay]) -> Bools:
-    """Return which places of an object, of the nearest MAX_TESTED_SPOTS, leave each kept way possible.
-
-    candidates : (rows, columns) bool, its lowest row and column. far : the way to each. offsets : its squares relative
-    to these.
-    """
+    """Return which places of an object, of the nearest MAX_TESTED_SPOTS, leave each kept way possible."""
     found = np.zeros_like(candidates)
     where = np.argwhere(candidates)
     where = where[np.argsort(far[candidates], kind="stable")][:MAX_TESTED_SPOTS]

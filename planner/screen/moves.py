@@ -31,11 +31,7 @@ UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no wh
 
 
 def orientation_is_uncertain(model: WorldModel) -> bool:
-    """Return whether the angle of the map frame may likely be wrong by more than ORIENTATION_TOLERANCE.
-
-    The angle is that between the map frame and the robot frame. Angles that are unlikely by all sampled completions of
-    the map do not count: this is the weaker doubt, while `orientation_is_settled` asks for all doubt.
-    """
+    """Return whether the angle of the map frame may likely be wrong by more than ORIENTATION_TOLERANCE."""
     return model.likely_spread > ORIENTATION_TOLERANCE
 
 
@@ -45,28 +41,18 @@ def orientation_is_settled(model: WorldModel) -> bool:
 
 
 class Pace(NamedTuple):
-    """Limits on one straight move.
+    """Limits on one straight move."""
 
-    The length of a move is the greater of its rows and its columns, in squares.
-
-    Attributes
-    ----------
-    longest_by_kind : the greatest length of a move in squares, by the kind of the subgoal (SubgoalKind).
-    longest_uncertain : the greatest length in squares while the orientation of the map frame is uncertain, and with it
-        where a move leads.
-    bold : whether a move crosses squares that are only believed to be free, right up to what is not settled. A move
-        that is stopped ends beside what stopped it, and that is mostly where the robot wants to be.
-    """
-
+    # The greatest length of a move in squares, by the kind of the subgoal (SubgoalKind)
     longest_by_kind: Mapping[str, int]
+    # The greatest length in squares while the orientation of the map frame is uncertain, and with it where a move leads
     longest_uncertain: int
+    # Whether a move crosses squares that are only believed to be free, right up to what is not settled. A move that is
+    # stopped ends beside what stopped it, and that is mostly where the robot wants to be.
     bold: bool
 
     def most(self, kind: str, model: WorldModel) -> int:
-        """Return the greatest length of a move now, in squares: the greater of its rows and its columns.
-
-        While the orientation of the map frame is uncertain, it is at most `longest_uncertain`. kind : of the subgoal.
-        """
+        """Return the greatest length of a move now, in squares: the greater of its rows and its columns."""
         return (
             min(self.longest_by_kind[kind], self.longest_uncertain)
             if orientation_is_uncertain(model)
@@ -74,11 +60,7 @@ class Pace(NamedTuple):
         )
 
     def passable(self, cost_maps: CostMaps, kind: str) -> Bools:
-        """Return the squares that a move at this pace may cross, (rows, columns) bool, on the arrays of the view.
-
-        The safe squares for a pace that is not bold. For a bold one those that are believed free, and for a subgoal of
-        kind INSPECT also those close to objects that are likely free.
-        """
+        """Return the squares that a move at this pace may cross, (rows, columns) bool, on the arrays of the view."""
         if not self.bold:
             return cost_maps.safe
         return cost_maps.approachable if kind == SubgoalKind.INSPECT else cost_maps.believed
@@ -106,21 +88,8 @@ def next_move(
     pace: Pace = WALKING_PACE,
     off_centre: bool = True,
 ) -> Move:
-    """Choose the longest straight move that stays on passable squares and in the class of a path.
-
-    It ends at a later square of the path, and nothing that is not free lies between the two: the way that was chosen is
-    the one that is walked. It ends at the next square where no longer move is allowed, even if that one is not
-    passable. While the orientation is uncertain, the second half of a move of more than TIGHT_MOVE_LENGTH squares keeps
-    one more square clear around it, unless the pace is bold.
-
-    Parameters
-    ----------
-    path : edge-connected squares (column, row) on the arrays of the view; the first is the robot's. Of that one alone
-        the move leads to its middle.
-    level : the certainty level of these squares.
-    kind : of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square, unless
-        `off_centre` is false.
-    """
+    """Choose the longest straight move that stays on passable squares and in the class of a path."""
+    # It ends at the next square where no longer move is allowed, even if that one is not passable.
     here, longest = path[0], pace.most(kind, cost_maps.model)
     passable, roomy = pace.passable(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
     there = path[min(1, len(path) - 1)]
@@ -138,63 +107,37 @@ def next_move(
 
 
 def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) -> Bools:
-    """Compute the squares that one straight move at the pace CARRYING_PACE reaches from where the robot stands.
-
-    (rows, columns) bool on the arrays of the view.
-
-    Parameters
-    ----------
-    kind : of the subgoal (SubgoalKind); it decides how long a move may be, and which squares it may cross.
-    candidates : (rows, columns) bool, the squares to test; None for all.
-    """
+    """Compute the squares that one straight move at the pace CARRYING_PACE reaches from where the robot stands."""
     longest = CARRYING_PACE.most(kind, cost_maps.model)
     return straight(CARRYING_PACE.passable(cost_maps, kind), *cost_maps.here, longest, candidates)
 
 
 def _roomy(cost_maps: CostMaps) -> Bools | None:
-    """Return the safe squares with safe squares all around, (rows, columns) bool on the arrays of the view.
-
-    None while the orientation is certain enough, so that no such room is asked for.
-    """
+    """Return the safe squares with safe squares all around, (rows, columns) bool on the arrays of the view."""
+    # None while the orientation is certain enough, so that no such room is asked for.
     return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
 
 def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
-    """Return whether a straight move between two squares (column, row) keeps enough room.
-
-    True when the move is no longer than TIGHT_MOVE_LENGTH squares (the greater of its rows and columns), or when a unit
-    square sweeps only `roomy` squares from halfway to its end.
-
-    roomy : (rows, columns) bool on the arrays of the view; None when all squares are roomy.
-    """
+    """Return whether a straight move between two squares (column, row) keeps enough room."""
+    # None when all squares are roomy.
     far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
     halfway = (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
     return roomy is None or far <= TIGHT_MOVE_LENGTH or sweep_is_free(roomy, halfway, there)
 
 
 def move_to(place: XY, model: WorldModel) -> Move:
-    """Return the move from the robot's believed place to a point of the map frame, (x, y) in squares.
-
-    The move is in the robot's own frame (east, north), in squares, rounded to COMMAND_DIGITS decimals. A robot believed
-    within rounding of a grid line is taken to stand on it.
-    """
+    """Return the move from the robot's believed place to a point of the map frame, (x, y) in squares."""
     here = snap_to_line(model.place)
     east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
     return Move(round(east, COMMAND_DIGITS) + 0.0, round(north, COMMAND_DIGITS) + 0.0)
 
 
 def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, float]:
-    """Choose how far from the centre of a square a move into it ends, (x, y) in squares, map frame.
-
-    While the orientation is uncertain, a move whose end some whole-degree turn would put on a grid line ends a little
-    off the centre. On a grid line it would be chance in which square the robot sees itself, which no hypothesis could
-    explain. Later a move ends, where that costs nothing, near the edge of its square: if the origin lies elsewhere
-    within its square than believed, the robot sees itself in the next square then. In all other cases it ends at the
-    centre.
-
-    square : (column, row) on the arrays of the view. kind : of the subgoal; only OFF_CENTRE_KINDS may end near the
-        edge.
-    """
+    """Choose how far from the centre of a square a move into it ends, (x, y) in squares, map frame."""
+    # While the orientation is uncertain, a move whose end some whole-degree turn would put on a grid line ends a little
+    # off the centre. On a grid line it would be chance in which square the robot sees itself, which no hypothesis could
+    # explain.
     model = cost_maps.model
     if orientation_is_uncertain(model):
         return UNAMBIGUOUS_OFFSET if _may_end_on_grid_line(model, square) else (0.0, 0.0)
@@ -211,24 +154,14 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
 
 
 def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
-    """Return whether a move to a square's centre, turned by some whole number of degrees, ends on a grid line.
-
-    The turn is about where the robot stands, by 0 to 89 degrees. square : (column, row) on the arrays of the view.
-    """
+    """Return whether a move to a square's centre, turned by some whole number of degrees, ends on a grid line."""
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
     ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
     return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - GRID_LINE_TOLERANCE).any())
 
 
 def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Command | None:
-    """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`.
-
-    Any other command, a move into another square, and None are returned unchanged.
-
-    Parameters
-    ----------
-    place : a point (x, y) of the map frame, in squares.
-    """
+    """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`."""
     if not isinstance(command, Move):
         return command
     dx, dy = model.frame.to_map(command.east, command.north)

@@ -35,39 +35,17 @@ MIN_DOUBTFUL_PROBABILITY = 0.3  # beside squares occupied with at least this, mo
 
 
 class Reached(NamedTuple):
-    """The cheapest way to some squares.
+    """The cheapest way to some squares."""
 
-    Attributes
-    ----------
-    level : the certainty level of the way: 0 the surest, UNSEEN_LEVEL the least sure.
-    cost : its length in squares, plus LEVEL_COST squares for each level.
-    """
-
-    level: int
-    cost: float
+    level: int  # the certainty level of the way: 0 the surest, UNSEEN_LEVEL the least sure
+    cost: float  # its length in squares, plus LEVEL_COST squares for each level
 
 
 class CostMaps:
-    """One world model, projected on the screen at every certainty level.
-
-    All arrays are (rows, columns), as those of the model's view: row 0 in the south, column 0 in the west of the map
-    frame; a flat index is row * columns + column.
-
-    Attributes
-    ----------
-    model : the world model.
-    here : the square (column, row) of the robot, on the arrays of the view.
-    kept_off : bool, the squares that the task forbids to the robot.
-    """
+    """One world model, projected on the screen at every certainty level."""
 
     def __init__(self, model: WorldModel, carried: Bools | None = None, kept_off: Bools | None = None) -> None:
-        """Make the cost maps of a world model; each map is computed when it is first asked for.
-
-        Parameters
-        ----------
-        carried : the squares of an object that moves along with the robot and so is not in its way; None for no such
-            object.
-        """
+        """Make the cost maps of a world model; each map is computed when it is first asked for."""
         self.model = model
         nothing: Bools = np.zeros(model.labels.shape, np.bool_)
         self.kept_off = nothing if kept_off is None else kept_off
@@ -77,16 +55,8 @@ class CostMaps:
         self._barred = model.squares(model.barred)
 
     def free(self, level: int) -> Bools:
-        """Compute the squares that may be crossed at a certainty level, (rows, columns) bool: a new array at each call.
-
-        The robot's own square is always one of them (see `_stand`); squares that stopped a motion never are, unless
-        they are carried, nor are those that the task forbids to it.
-
-        Parameters
-        ----------
-        level : 0 (surely floor) to UNSEEN_LEVEL (all that is not excluded, never seen squares too); each level holds
-            more.
-        """
+        """Compute the squares that may be crossed at a certainty level, (rows, columns) bool."""
+        # A new array at each call.
         view = self.model.view
         mask = view.probability <= LEVEL_MAX_PROBABILITY[min(level, len(LEVEL_MAX_PROBABILITY) - 1)]
         if level == UNSEEN_LEVEL:  # the counts alone decide, whatever the sampled completions show
@@ -97,10 +67,8 @@ class CostMaps:
 
     @cached_property
     def _stand(self) -> Bools:
-        """The robot's own square, (rows, columns) bool; with those to the floor where that square is in part wall.
-
-        A wall covers some squares in part, so the robot may stand in one that meets floor at a corner alone.
-        """
+        """The robot's own square, (rows, columns) bool; with those to the floor where that square is in part wall."""
+        # A wall covers some squares in part, so the robot may stand in one that meets floor at a corner alone.
         (column, row), space = self.here, self.model.space
         mask: Bools = np.zeros(space.shape, np.bool_)
         south, west = max(row - PART_COVERED, 0), max(column - PART_COVERED, 0)
@@ -119,10 +87,8 @@ class CostMaps:
         return DistanceMaps(self)
 
     def nearest(self, squares: SquareIndices) -> Reached | None:
-        """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
-
-        None when none can be reached at any level. A surer level counts before a shorter way.
-        """
+        """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached."""
+        # None when none can be reached at any level.
         for level in range(UNSEEN_LEVEL + 1):
             far = self.distances[level].ravel()[squares]
             if (far != GEODESIC_UNREACHED).any():
@@ -150,11 +116,7 @@ class CostMaps:
 
     @cached_property
     def safe(self) -> Bools:
-        """The squares over which a move is made without looking first, (rows, columns) bool.
-
-        They are settled as free; or taken for floor, and neither beside a doubtful square nor beside an unseen one. The
-        robot's own square is always one of them; squares that stopped a motion are not.
-        """
+        """The squares over which a move is made without looking first, (rows, columns) bool."""
         view = self.model.view
         doubtful = self.unsettled & (view.probability >= MIN_DOUBTFUL_PROBABILITY) | ~view.seen
         mask: Bools = (view.state == FREE) | (self.model.space & ~dilate(doubtful, 1))
@@ -162,48 +124,31 @@ class CostMaps:
 
     @cached_property
     def believed(self) -> Bools:
-        """The squares of bold moves, (rows, columns) bool: the safe ones, and all that are hardly occupied.
-
-        The latter are free at level 0 (the surest) and not beside unseen squares. For the case that being stopped costs
-        less than looking first.
-        """
+        """The squares of bold moves, (rows, columns) bool: the safe ones, and all that are hardly occupied."""
         view = self.model.view
         return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~dilate(~view.seen, 1))
 
     @cached_property
     def approachable(self) -> Bools:
-        """The squares of bold moves up to an object, (rows, columns) bool.
-
-        These are the squares of `believed`, and those that share an edge with an object and are free at APPROACH_LEVEL.
-        Where such a square is occupied after all, the object itself stops the robot, right where it wants to be.
-        """
+        """The squares of bold moves up to an object, (rows, columns) bool."""
         view = self.model.view
         things = view.seen & (view.probability >= SURELY_OCCUPIED) & ~self.model.verge
         return self.believed | (self.free(APPROACH_LEVEL) & with_edge_neighbours(things))
 
     @cached_property
     def information_gain(self) -> Floats:
-        """The weighted number of unseen squares that come into sight from each square, (rows, columns) float64.
-
-        The unit is one unseen square into which the floor likely goes on (planner.screen.unseen_gain).
-        """
+        """The weighted number of unseen squares that come into sight from each square, (rows, columns) float64."""
         return expected_gain(self.model.view)
 
     def far(self, squares: SquareIndices) -> Floats:
-        """Compute the length of the sure way from the robot to each of `squares`, in squares, (n,) float64.
-
-        Where no way is sure, the straight distance between the centres of the two squares stands instead.
-        """
+        """Compute the length of the sure way from the robot to each of `squares`, in squares, (n,) float64."""
         lengths = self.distances[0].ravel()[squares] / FIFTHS_PER_SQUARE
         rows, columns = np.divmod(squares, self.floor.shape[1])
         return np.where(lengths < 0, np.hypot(columns - self.here[0], rows - self.here[1]), lengths)
 
 
 class DistanceMaps:
-    """The distances of all squares from the robot, by certainty level; each map is computed at its first use.
-
-    `maps[level]` is (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
-    """
+    """The distances of all squares from the robot, by certainty level; each map is computed at its first use."""
 
     def __init__(self, cost_maps: CostMaps) -> None:
         """Make the distance maps of some cost maps; nothing is computed yet."""
@@ -218,11 +163,7 @@ class DistanceMaps:
 
 
 def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
-    """Compute the cost of the way to each object's vicinity, by the object's name, in the order of the model's objects.
-
-    In squares of way, plus LEVEL_COST squares for each certainty level. Objects that cannot be reached are left out.
-    The vicinity are the squares of the object and all squares around it.
-    """
+    """Compute the cost of the way to each object's vicinity, by the object's name, in model order."""
     found = {}
     for node in cost_maps.model.objects:
         reached = cost_maps.nearest(np.flatnonzero(dilate(cost_maps.model.mask(node.patch), 1)))
@@ -245,10 +186,7 @@ def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
 
 
 def shift_mask(mask: NDArray[T], columns: int, rows: int) -> NDArray[T]:
-    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; what comes in from outside is False or 0.
-
-    Positive numbers move it towards greater indices: 1 column to the east, 1 row to the north.
-    """
+    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; what comes in from outside is False or 0."""
     high, wide = mask.shape
     padded = np.pad(mask, 1)
     return padded[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]

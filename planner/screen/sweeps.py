@@ -21,11 +21,7 @@ SWEEP_TOLERANCE = 1e-9  # squares; smaller overlaps are rounding errors of float
 
 @cache
 def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
-    """Compute the squares that a unit square sweeps when it moves by (`columns`, `rows`), in squares, of either sign.
-
-    The columns and the rows of the squares whose interior is met, (n,) int64 each, relative to the square of the start;
-    the squares of the start and of the end are among them. Both are shared with later calls: do not change them.
-    """
+    """Compute the squares that a unit square sweeps when it moves by (`columns`, `rows`) of either sign."""
     c, r = np.meshgrid(
         np.arange(min(0, columns), max(0, columns) + 1), np.arange(min(0, rows), max(0, rows) + 1), indexing="xy"
     )
@@ -45,10 +41,7 @@ def sweep_is_free(free: Bools, a: Square, b: Square) -> bool:
 
 
 def line_sweep_is_free(free: Bools, a: XY, b: XY) -> bool:
-    """Return whether a unit square sweeps free squares only while its centre moves from point `a` to point `b`.
-
-    Squares outside of the array count as not free. a, b : (x, y) in squares, in the frame of the array.
-    """
+    """Return whether a unit square sweeps free squares only while its centre moves from point `a` to point `b`."""
     reach = [np.arange(math.floor(min(p, q) - 0.5), math.ceil(max(p, q) + 0.5)) for p, q in zip(a, b, strict=True)]
     columns, rows = np.meshgrid(*reach, indexing="xy")
     first, last = np.zeros(columns.shape), np.ones(columns.shape)
@@ -66,20 +59,7 @@ def line_sweep_is_free(free: Bools, a: XY, b: XY) -> bool:
 
 
 def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square]:
-    """Find the shortest edge-connected path of free squares among those that a polyline touches.
-
-    Where the line runs along the edge or through the corner of squares, the squares on both sides are touched. The
-    squares (column, row) lead from that of the first point to that of the last point, both included.
-
-    Parameters
-    ----------
-    points : (x, y) in squares, in the frame of the array. The ends lie within free squares.
-
-    Raises
-    ------
-    ValueError
-        When the touched free squares do not connect the two ends.
-    """
+    """Find the shortest edge-connected path of free squares among those that a polyline touches."""
     start, goal = ((math.floor(x), math.floor(y)) for x, y in (points[0], points[-1]))
     rows, columns = free.shape
     touched = {
@@ -92,10 +72,8 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
 
 
 def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Square]:
-    """Search the shortest edge-connected path within `squares` from `start` to `goal`, both included, breadth first.
-
-    Raises ValueError when there is none.
-    """
+    """Search the shortest edge-connected path within `squares` from `start` to `goal`, both included, breadth first."""
+    # Raises ValueError when there is none.
     before = {start: start}
     queue = deque([start])
     while queue and goal not in before:
@@ -113,10 +91,7 @@ def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Sq
 
 
 def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
-    """Compute the squares (column, row) that the segment from `a` to `b` meets, even at an edge or corner only.
-
-    a, b : points (x, y) in squares.
-    """
+    """Compute the squares (column, row) that the segment from `a` to `b` meets, even at an edge or corner only."""
     cuts = {0.0, 1.0}
     for p, q in zip(a, b, strict=True):
         if p != q:
@@ -128,9 +103,6 @@ def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
 
 
 def _touched_by(x: float, y: float) -> list[Square]:
-    """List the square (column, row) that holds a point (x, y), or all squares on whose shared edge or corner it lies.
-
-    It lies on an edge within SWEEP_TOLERANCE.
-    """
+    """List the square (column, row) that holds a point (x, y), or all on whose shared edge or corner it lies."""
     columns, rows = ({math.floor(v - SWEEP_TOLERANCE), math.floor(v + SWEEP_TOLERANCE)} for v in (x, y))
     return [(column, row) for column in columns for row in rows]

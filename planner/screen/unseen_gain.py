@@ -18,11 +18,7 @@ BESIDE_FLOOR, BESIDE_WALL, BESIDE_NOTHING = 0, 1, 2  # labels of squares by what
 
 
 def expected_gain(view: MapView) -> Floats:
-    """Compute the expected information gain of looking from each square, (rows, columns) float64.
-
-    It is the weighted number of unseen squares within GAIN_REACH rows and columns, those beyond the arrays of the view
-    included. The unit is one unseen square that the floor likely goes on into; others count VERGE_WEIGHT.
-    """
+    """Compute the expected information gain of looking from each square, (rows, columns) float64."""
     seen = np.pad(view.seen, GAIN_REACH)
     labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), GAIN_REACH)
     beside_floor = _nearest_label(labels, seen) == BESIDE_FLOOR
@@ -31,14 +27,7 @@ def expected_gain(view: MapView) -> Floats:
 
 
 def window_sums(padded: Floats, reach: int) -> Floats:
-    """Compute for each square the sum of the values within `reach` rows and columns of it, itself included.
-
-    (rows, columns) float64, in the unit of the values; [0, 0] belongs to padded[reach, reach].
-
-    Parameters
-    ----------
-    padded : (rows + 2 reach, columns + 2 reach), the values with a margin of `reach` on each side.
-    """
+    """Compute for each square the sum of the values within `reach` rows and columns of it, itself included."""
     table = np.pad(padded, 1).cumsum(0).cumsum(1)[:-1, :-1]
     side = 2 * reach + 1
     sums: Floats = table[side:, side:] - table[:-side, side:] - table[side:, :-side] + table[:-side, :-side]
@@ -46,11 +35,7 @@ def window_sums(padded: Floats, reach: int) -> Floats:
 
 
 def _nearest_label(labels: Longs, seen: Bools) -> NDArray[np.int8]:
-    """Give each unseen square within GAIN_REACH steps the least label of the nearest seen squares.
-
-    A step leads to a square that shares an edge. Seen squares keep their label, BESIDE_FLOOR or BESIDE_WALL; unseen
-    squares further away get BESIDE_NOTHING.
-    """
+    """Give each unseen square within GAIN_REACH steps the least label of the nearest seen squares."""
     near = np.where(seen, labels, BESIDE_NOTHING).astype(np.int8)
     for _ in range(GAIN_REACH):
         least = near.copy()

@@ -39,41 +39,26 @@ FRONTIER_REASON = "the floor goes on unseen"
 
 
 class Viewpoint(NamedTuple):
-    """A set of squares from each of which the same unknown thing is seen or felt.
+    """A set of squares from each of which the same unknown thing is seen or felt."""
 
-    They are the squares where the robot would stand, not those that it would look at.
+    # They are the squares where the robot would stand, not those that it would look at.
 
-    Attributes
-    ----------
-    squares : flat indices (row * columns + column) on the arrays of the view, (n,) int64; empty when there is no such
-        square.
-    what : what is not known, in words.
-    chance : percent of belief that it is what is looked for; 100 when nothing tells that it is less.
-    """
-
+    # Flat indices (row * columns + column) on the arrays of the view, (n,) int64; empty when there is no such square
     squares: SquareIndices
-    what: str
-    chance: int = 100
+    what: str  # what is not known, in words
+    chance: int = 100  # percent of belief that it is what is looked for; 100 when nothing tells that it is less
 
 
 def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
-    """Find the reachable floor that borders on unseen squares: one Viewpoint for each frontier, a connected stretch.
-
-    Its squares are those of the frontier itself. Each has the chance 100: see `with_chances`. apart : see
-    `unlooked_floor`.
-    """
+    """Find the reachable floor that borders on unseen squares: one Viewpoint for each frontier, a connected stretch."""
     border = unlooked_floor(cost_maps, apart) & dilate(~cost_maps.model.view.seen, 1)
     return [Viewpoint(squares, FRONTIER_REASON) for squares in group_by_label(_stretches(border))]
 
 
 def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
-    """Find likely gaps in what bounds the floor, through which it would go on unseen.
-
-    A stretch next to floor that surely goes on unseen is left out: it belongs to a frontier.
-
-    One Viewpoint for each gap. Its squares are those of the gap itself: a way leads to them at certainty level
-    GAP_LEVEL, and from them the robot would see beyond.
-    """
+    """Find likely gaps in what bounds the floor, through which it would go on unseen."""
+    # Its squares are those of the gap itself: a way leads to them at certainty level GAP_LEVEL, and from them the robot
+    # would see beyond.
     view = cost_maps.model.view
     edge = view.seen & dilate(~view.seen, 1)
     border = edge & (cost_maps.distances[GAP_LEVEL] != GEODESIC_UNREACHED)
@@ -83,17 +68,7 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
 
 
 def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
-    """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely.
-
-    One Viewpoint for each connected stretch of such squares that has such floor: its squares are reachable floor within
-    FOVEA_RANGE of the stretch.
-
-    Parameters
-    ----------
-    apart : as for `unlooked_floor`.
-    odd : whether only squares count that may well be floor, and so part of a door or of the floor behind an object;
-        False for all squares that are not settled.
-    """
+    """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely."""
     open_ = cost_maps.unsettled & dilate(cost_maps.floor, 1)
     if odd:
         open_ &= cost_maps.model.view.probability < SURELY_OCCUPIED
@@ -102,40 +77,27 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
 
 
 def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
-    """Return the floor beside an object from which the robot feels its colour and did not look yet.
-
-    Floor of the eight neighbours counts.
-    """
+    """Return the floor beside an object from which the robot feels its colour and did not look yet."""
     beside = dilate(cost_maps.model.mask(node.patch), 1)
     return Viewpoint(np.flatnonzero(unlooked_floor(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
 
 
 def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
-    """Return the floor from which the robot feels whether something is part of a wall, and where it did not look yet.
-
-    Only floor that shares an edge with the thing counts.
-    """
+    """Return the floor from which the robot feels whether something is part of a wall, and where not yet."""
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
     return Viewpoint(beside, "whether something stands against the wall was not felt")
 
 
 def elsewhere_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
-    """Return the same without the robot's own square: what is beside it is felt already.
-
-    mask : (rows, columns) bool on the arrays of the view, the squares of the thing.
-    """
+    """Return the same without the robot's own square: what is beside it is felt already."""
     look, model = wall_touch_viewpoint(cost_maps, mask), cost_maps.model
     return look._replace(squares=look.squares[look.squares != square_index(model.place, model)])
 
 
 def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
-    """Return the floor from which the robot feels how far an object goes; None when nothing about it is to be felt.
-
-    That is so for an object that was never moved, is not in hand, and touches a wall or another object, or did not move
-    when it was pushed: that may be more than one thing, or a thing and a wall, so all of its rim is felt. It is felt
-    first where exactly it ends beside what it touches: of several pieces of seeming wall beside it the first, in the
-    order of the model, that can be felt; at last its own rim, if it did not move.
-    """
+    """Return the floor from which the robot feels how far an object goes; None when nothing about it is to be felt."""
+    # That is so for an object that was never moved, is not in hand, and touches a wall or another object, or did not
+    # move when it was pushed: that may be more than one thing, or a thing and a wall, so all of its rim is felt.
     model = cost_maps.model
     if node.moved or model.held == node.name:
         return None
@@ -153,16 +115,8 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
 
 
 def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
-    """Return the floor from which some squares are seen best, where the robot did not look yet.
-
-    It is reachable floor within the range of the fovea of any of them, or else of the middle zone. A Viewpoint without
-    squares when all of that was looked from.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool on the arrays of the view, the squares to see.
-    what : what is not known of them, in words.
-    """
+    """Return the floor from which some squares are seen best, where the robot did not look yet."""
+    # It is reachable floor within the range of the fovea of any of them, or else of the middle zone.
     for reach, apart in ((FOVEA_RANGE, VIEW_SPACING), (FOVEA_RANGE, 0), (MIDDLE_ZONE_RANGE, VIEW_SPACING)):
         near = np.flatnonzero(unlooked_floor(cost_maps, apart) & dilate(mask, reach))
         if len(near):
@@ -171,31 +125,20 @@ def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
 
 
 def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:
-    """Return the floor from which all squares around a point lie within the fovea, whether looked from or not.
-
-    x, y : the point, in squares, map frame.
-    """
+    """Return the floor from which all squares around a point lie within the fovea, whether looked from or not."""
     mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(cost_maps.floor & dilate(mask, FOVEA_RANGE - 1))
 
 
 def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareIndices:
-    """Return the floor from which the robot sees what lies behind some squares.
-
-    The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them that is more than
-    VIEW_SPACING from every square looked from.
-    """
+    """Return the floor from which the robot sees what lies behind some squares."""
     mask = indices_to_mask(squares, cost_maps.floor.shape)
     near = unlooked_floor(cost_maps, VIEW_SPACING) & dilate(mask, LOOK_AHEAD_RANGE)
     return np.flatnonzero(near | (mask & cost_maps.floor))
 
 
 def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
-    """Find the floor from which the unsettled walls beside each door are seen closely.
-
-    At most one Viewpoint for each door, in their order. Doors that are sure are left out, and those whose walls are
-    settled or cannot be seen better.
-    """
+    """Find the floor from which the unsettled walls beside each door are seen closely."""
     found = []
     for door in (one for one in doors if not one.sure):
         ends = np.zeros(cost_maps.unsettled.shape, np.bool_)
@@ -209,22 +152,15 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
 
 
 def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
-    """Find connected floor that is seen and cannot be reached yet: one Viewpoint for each such part.
-
-    Its squares are those of the part itself. All floor is connected, so a passage that is not seen yet must lead there.
-    Parts of less than MIN_UNREACHED_SQUARES squares are left out.
-    """
+    """Find connected floor that is seen and cannot be reached yet: one Viewpoint for each such part."""
+    # All floor is connected, so a passage that is not seen yet must lead there.
     apart = components(cost_maps.model.space & ~cost_maps.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
     return [Viewpoint(squares, what) for squares in group_by_label(apart) if len(squares) >= MIN_UNREACHED_SQUARES]
 
 
 def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewpoint]:
-    """Return the viewpoints, in order, with their chance that a wanted object comes into sight at their nearest square.
-
-    The chance is in percent, 1 to 90. The nearest square is that of the shortest way for the robot; the first one when
-    none can be reached.
-    """
+    """Return the viewpoints, in order, with the chance that a wanted object is seen from their nearest square."""
     if not viewpoints:
         return []
     gain = cost_maps.information_gain.ravel()
@@ -232,18 +168,8 @@ def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewp
 
 
 def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_cost: float) -> list[Viewpoint]:
-    """Choose, of the squares that one straight move reaches, those with the greatest information gain for their cost.
-
-    They need not border on unseen squares: a long move along a frontier often shows more than a short one up to it. One
-    Viewpoint, of all squares that are worth at least EQUAL_VALUE_SHARE of the best, with the chance in percent, 1 to
-    90, that a wanted object comes into sight from the nearest of them; [] when nothing unseen comes into sight from a
-    square where the robot did not look yet.
-
-    Parameters
-    ----------
-    reachable : (rows, columns) bool on the arrays of the view, the squares that one move reaches.
-    move_cost, square_cost : the cost of a move, and of each square of its way, in the same unit.
-    """
+    """Choose, of the squares that one straight move reaches, those of most information gain for their cost."""
+    # They need not border on unseen squares: a long move along a frontier often shows more than a short one up to it.
     candidates = np.flatnonzero(reachable & unlooked_floor(cost_maps, VIEW_SPACING))
     gain = cost_maps.information_gain.ravel()[candidates]
     if gain.max(initial=0.0) < VERGE_WEIGHT:
@@ -256,18 +182,12 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
 
 
 def _chance(gain: float) -> int:
-    """Estimate the chance that a wanted object is among `gain` unseen squares, in percent, 1 to 90.
-
-    gain : the weighted number of unseen squares (see planner.screen.unseen_gain).
-    """
+    """Estimate the chance that a wanted object is among `gain` unseen squares, in percent, 1 to 90."""
     return max(1, min(90, round(100 * gain / SQUARES_PER_OBJECT)))
 
 
 def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
-    """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached.
-
-    The first of them, of which there is at least one, when none is reached.
-    """
+    """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached."""
     reached = cost_maps.nearest(squares)
     if reached is None:
         return int(squares[0])
@@ -276,31 +196,20 @@ def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
 
 
 def unlooked_floor(cost_maps: CostMaps, apart: int) -> Bools:
-    """Return the reachable floor from which the robot did not look yet, (rows, columns) bool.
-
-    A second look from the same square shows nothing new.
-
-    apart : floor within so many rows and columns of an earlier viewpoint, a square looked from, is left out; 0 for that
-        square only.
-    """
+    """Return the reachable floor from which the robot did not look yet, (rows, columns) bool."""
     mask: Bools = cost_maps.floor & ~dilate(cost_maps.looked_from, apart)
     return mask
 
 
 def _stretches(mask: Bools) -> Labels:
-    """Label the connected stretches of a mask, (rows, columns) int32: 1 and up, 0 outside the mask.
-
-    Squares are connected when the squares around them (3 x 3) overlap or share an edge, so also across small gaps.
-    """
+    """Label the connected stretches of a mask, (rows, columns) int32: 1 and up, 0 outside the mask."""
+    # Squares are connected when the squares around them (3 x 3) overlap or share an edge, so also across small gaps.
     labels: Labels = np.where(mask, components(dilate(mask, 1)).labels, 0)
     return labels
 
 
 def group_by_label(labels: Labels) -> list[SquareIndices]:
-    """Group the flat indices of a (rows, columns) array by label, in ascending order of labels, without label 0.
-
-    One array for each label that occurs, in ascending order.
-    """
+    """Group the flat indices of a (rows, columns) array by label, in ascending order of labels, without label 0."""
     flat = labels.ravel()
     squares = np.flatnonzero(flat)
     ordered = squares[np.argsort(flat[squares], kind="stable")]

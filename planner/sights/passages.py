@@ -37,10 +37,7 @@ class WalkThroughWall(NamedTuple):
 
 
 def passages(cost_maps: CostMaps, things: bool = True) -> Iterator[WalkThroughWall]:
-    """Yield the walks that lead through at most MAX_THICK_WALL squares of wall, by direction and row.
-
-    things : whether ways over things count, which may be moved; if not, things are walls.
-    """
+    """Yield the walks that lead through at most MAX_THICK_WALL squares of wall, by direction and row."""
     reached, view = cost_maps.floor, cost_maps.model.view
     apart = floor_apart(cost_maps.model, reached, things)
     for number, (dx, dy) in enumerate(EDGE_STEPS):

@@ -12,16 +12,7 @@ from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 
 
 def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
-    """Return the objects that were never seen to move as one thing, and so may be several, in the order of the model.
-
-    Where neither a wall between two parts of the floor matters nor the task speaks of objects, those are left out that
-    hide nothing: all around them and the things beside them the floor is reached, or verge was felt.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
-    scope : what matters for the task.
-    """
+    """Return the objects that were never seen to move as one thing, and so may be several, in model order."""
     model = cost_maps.model
     several = [node for node in model.objects if not node.whole and node.confidence >= MIN_LIKELY_OBJECT]
     if scope.parting or scope.things:
@@ -32,15 +23,7 @@ def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
 
 
 def unfelt_rims(cost_maps: CostMaps, scope: FeelingScope) -> list[Viewpoint]:
-    """Return, for each thing that may be several and was not felt all round, the floor from which more of it is felt.
-
-    In the order of the model; viewpoints without squares are left out.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
-    scope : what matters for the task.
-    """
+    """Return, for each thing that may be several and was not felt all round, floor from which more of it is felt."""
     model = cost_maps.model
     felt = model.squares(model.felt)
     looks = [

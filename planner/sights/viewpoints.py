@@ -34,16 +34,11 @@ UNSEEN_SQUARE_WEIGHT = 0.03  # worth of an unseen square in sight, where a squar
 
 
 class Approach(NamedTuple):
-    """The purpose for which the robot goes up to an object.
+    """The purpose for which the robot goes up to an object."""
 
-    Attributes
-    ----------
-    take : whether to take it; else to be beside it is all that is wanted.
-    corner : the direction (x, y), each 1 or -1, along the axes of the map, of the corner of walls to which the object
-        shall be brought; None for no corner. On the sides towards these walls the robot would stand in the way.
-    """
-
-    take: bool
+    take: bool  # whether to take it; else to be beside it is all that is wanted
+    # The direction (x, y), each 1 or -1, along the axes of the map, of the corner of walls to which the object shall be
+    # brought; None for no corner. On the sides towards these walls the robot would stand in the way.
     corner: tuple[int, int] | None = None
 
 
@@ -51,18 +46,7 @@ TO_REACH, TO_TAKE = Approach(take=False), Approach(take=True)
 
 
 def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[SquareIndices, Viewpoint]]:
-    """Find the viewpoints for the places that may hold a wanted object which is not settled, with the squares of each.
-
-    A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY. Places come in the order
-    of their first squares, row by row from the south. A viewpoint has the greatest probability in the place as chance,
-    in percent. Places that are settled are left out, and those that cannot be seen better.
-
-    Parameters
-    ----------
-    likely : (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted
-        object.
-    what : what is not known there, in words.
-    """
+    """Find the viewpoints for the places that may hold a wanted object not settled yet, with each one's squares."""
     view = cost_maps.model.view
     spots = group_by_label(components(likely >= MIN_SIGHTING_PROBABILITY).labels)
     found = []
@@ -78,24 +62,13 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 
 
 def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
-    """Return the floor from which an object is seen better than it was.
-
-    A Viewpoint without squares when the robot looked from everywhere. Its own chance is 100 percent whatever `chance`
-    is: the probability, 0 to 1, that the object is the wanted one.
-    """
+    """Return the floor from which an object is seen better than it was."""
     squares = inspection_squares(cost_maps, cost_maps.model.mask(node.patch), chance, to)
     return Viewpoint(squares, f"it is not clear what {node.name} is")
 
 
 def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> SquareIndices:
-    """Choose the floor from which something is seen better than it was; none when the robot looked from everywhere.
-
-    At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked at
-    from further away first: most of it is settled from there. After that, the best squares nearby are chosen.
-
-    mask : (rows, columns) bool on the arrays of the view, the squares that it may cover.
-    chance : the probability, 0 to 1, that it is the wanted one.
-    """
+    """Choose the floor from which something is seen better than it was; none when the robot looked from everywhere."""
     beside = dilate(mask, 1)
     beside_floor = np.flatnonzero(cost_maps.floor & with_edge_neighbours(mask))
     near = _taking_squares(cost_maps, mask, to) if to.take else beside_floor
@@ -116,12 +89,7 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
 
 
 def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareIndices:
-    """List the squares beside an object from which it may be taken. mask : the squares that it may cover.
-
-    The sides of the squares that surely belong to it come first, without those in its way; else the sides of all that
-    may belong to it. Of these only those count that one move reaches, if there are any, else those with reachable
-    floor.
-    """
+    """List the squares beside an object from which it may be taken. mask : the squares that it may cover."""
     surely = mask & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     sides = _sides_out_of_the_way(cost_maps, surely, to)
     for candidates in (sides, with_edge_neighbours(mask)):
@@ -133,12 +101,7 @@ def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareInd
 
 
 def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> Bools:
-    """Return the sides of an object, without those where the robot would be in its way, if others have floor.
-
-    (rows, columns) bool: the squares of the object and those that share an edge with one, whether floor or not.
-
-    surely : (rows, columns) bool, the squares of the object.
-    """
+    """Return the sides of an object, without those where the robot would be in its way, if others have floor."""
     sides = with_edge_neighbours(surely)
     if to.corner is None:
         return sides
@@ -150,14 +113,7 @@ def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> B
 def _most_revealing(
     cost_maps: CostMaps, near: SquareIndices, mask: Bools, chance: float, to: Approach
 ) -> SquareIndices:
-    """Choose those of `near` from which most unsettled squares of something are in the fovea for the way there.
-
-    All that are worth at least EQUAL_VALUE_SHARE of the best; `near` itself when it has less than two squares or
-    nothing is unsettled. A robot that is not beside the thing must set out once more if it is the wanted one.
-
-    mask : (rows, columns) bool, the squares that the thing may cover.
-    chance : the probability, 0 to 1, that it is the wanted one.
-    """
+    """Choose those of `near` from which most unsettled squares of something are in the fovea for the way there."""
     beside = dilate(mask, 1)
     open_ = beside & ~cost_maps.model.told
     if len(near) < 2 or not open_.any():

@@ -34,62 +34,42 @@ MIN_LIKELY_OBJECT = 20  # percent: what is less likely an object is felt as wall
 
 
 class WallKind(StrEnum):
-    """The reason why a stretch of wall may be a thing that can be moved, the likeliest first: see planner/asp/feel.lp.
+    """The reason why a stretch of wall may be a thing that can be moved, the likeliest first."""
 
-    Attributes
-    ----------
-    THING : it is beside a thing that was felt in the wall, and may belong to it.
-    NICHE : it is the back of a niche, as a recessed thing leaves it.
-    RIM : behind it the wall has a niche or sticks out, as a thing leaves it on the far side.
-    THIN : floor that is not reached was seen behind it, at most MAX_THIN_WALL squares away.
-    THICK : likewise, at most MAX_THICK_WALL squares away.
-    UNSEEN : squares that were never seen lie behind it, at most MAX_THICK_WALL squares away.
-    PARTING : behind it lies floor that is reached already.
-    PLAIN : nothing but wall was seen behind it.
-    """
+    # See planner/asp/feel.lp.
 
-    THING = "thing"
-    NICHE = "niche"
-    RIM = "rim"
-    THIN = "thin"
-    THICK = "thick"
-    UNSEEN = "unseen"
-    PARTING = "parting"
-    PLAIN = "plain"
+    THING = "thing"  # it is beside a thing that was felt in the wall, and may belong to it
+    NICHE = "niche"  # it is the back of a niche, as a recessed thing leaves it
+    RIM = "rim"  # behind it the wall has a niche or sticks out, as a thing leaves it on the far side
+    THIN = "thin"  # floor that is not reached was seen behind it, at most MAX_THIN_WALL squares away
+    THICK = "thick"  # likewise, at most MAX_THICK_WALL squares away
+    UNSEEN = "unseen"  # squares that were never seen lie behind it, at most MAX_THICK_WALL squares away
+    PARTING = "parting"  # behind it lies floor that is reached already
+    PLAIN = "plain"  # nothing but wall was seen behind it
 
 
 class FeelingPlace(NamedTuple):
-    """A square from which walls are felt, and what is felt there.
+    """A square from which walls are felt, and what is felt there."""
 
-    Attributes
-    ----------
-    square : its flat index (row * columns + column) on the arrays of the view.
-    doorways : how many stretches of DOORWAY_WIDTH unfelt squares, by kind, are told from it: none of them is one thing
-        if one of its squares is wall.
-    squares : how many unfelt squares, by kind, are felt from it.
-    """
-
-    square: int
+    square: int  # its flat index (row * columns + column) on the arrays of the view
+    # How many stretches of DOORWAY_WIDTH unfelt squares, by kind, are told from it: none of them is one thing if one of
+    # its squares is wall
     doorways: Counter[WallKind]
-    squares: Counter[WallKind]
+    squares: Counter[WallKind]  # how many unfelt squares, by kind, are felt from it
 
 
 class FeelingScope(NamedTuple):
-    """The walls that matter for a task.
+    """The walls that matter for a task."""
 
-    Attributes
-    ----------
-    parting : whether walls between two parts of the floor that is reached count. They lead to no new floor, but may
-        give an object, or a robot that must avoid a door, another way.
-    wanted : (rows, columns) bool on the arrays of the view, the only place to which a way is wanted; None when it is
-        not known where. Then walls count alone behind which that place lies, with no reached floor all around.
-    allowed : (rows, columns) bool, the floor on which the robot may go; None for all that it reaches.
-    things : whether the task speaks of objects: what seems to be one thing may be two, and one of them the one meant.
-    """
-
+    # Whether walls between two parts of the floor that is reached count. They lead to no new floor, but may give an
+    # object, or a robot that must avoid a door, another way.
     parting: bool = True
+    # (rows, columns) bool on the arrays of the view, the only place to which a way is wanted; None when it is not known
+    # where. Then walls count alone behind which that place lies, with no reached floor all around.
     wanted: Bools | None = None
+    # (rows, columns) bool, the floor on which the robot may go; None for all that it reaches
     allowed: Bools | None = None
+    # Whether the task speaks of objects: what seems to be one thing may be two, and one of them the one meant
     things: bool = True
 
 
@@ -97,22 +77,14 @@ ALL_WALLS = FeelingScope()
 
 
 def unfelt_walls(model: WorldModel) -> Bools:
-    """Return the squares where a wall was seen and never felt, beside floor to which the robot comes.
-
-    Floor counts to which it comes if all things that can be moved are moved away, and so does the floor under these.
-    (rows, columns) bool on the arrays of the view; squares of objects do not count.
-    """
+    """Return the squares where a wall was seen and never felt, beside floor to which the robot comes."""
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     mask: Bools = with_edge_neighbours(_ground(model)) & model.view.seen & ~model.space & ~felt & ~_things(model)
     return mask
 
 
 def floor_apart(model: WorldModel, reached: Bools, things: bool = True) -> Bools:
-    """Return the floor that was seen and that nothing but wall parts from where the robot is, (rows, columns) bool.
-
-    All floor is connected, and what a wall covers in part looks like wall: so one of these walls has an opening.
-    reached : the floor that the robot reaches. things : whether a way over things counts, too, for they may be moved.
-    """
+    """Return the floor that was seen and that nothing but wall parts from where the robot is, (rows, columns) bool."""
     floor = model.space | reached
     if things:
         floor |= np.any([model.mask(node.patch) for node in model.objects], axis=0)
@@ -130,12 +102,7 @@ def is_ringed(model: WorldModel, reached: Bools) -> bool:
 
 
 def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = ALL_WALLS) -> dict[WallKind, Bools]:
-    """Return the unfelt walls that may be a thing whose removal leads on, by kind; each square has one kind.
-
-    Parameters
-    ----------
-    reached : the floor that the robot reaches.
-    """
+    """Return the unfelt walls that may be a thing whose removal leads on, by kind; each square has one kind."""
     ground, space, seen = _ground(model), model.space, model.view.seen
     unfelt = unfelt_walls(model) & _leading(model, reached, scope)
     kinds = {kind: np.zeros_like(unfelt) for kind in WallKind}
@@ -167,10 +134,7 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
 
 
 def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list[FeelingPlace]:
-    """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none.
-
-    Squares from which the robot looked already are left out: what can be felt there was felt.
-    """
+    """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none."""
     model, floor = cost_maps.model, cost_maps.floor
     kinds = walls_in_question(model, floor, scope)
     number = np.zeros(floor.shape, np.int64)
@@ -207,10 +171,7 @@ def _ground(model: WorldModel) -> Bools:
 
 
 def _leading(model: WorldModel, reached: Bools, scope: FeelingScope) -> Bools:
-    """Return the squares through which a way may lead on: no reached floor parts them from what they may lead to.
-
-    That is the place that is wanted; or any floor that is not reached, and what was never seen.
-    """
+    """Return the squares through which a way may lead on: no reached floor parts them from what they may lead to."""
     if scope.parting and scope.wanted is None:
         return np.ones_like(reached)
     parts = components(np.pad(~reached, 1, constant_values=True))  # what lies beyond the arrays was never seen
@@ -234,10 +195,8 @@ def _things(model: WorldModel, embedded: bool = False) -> Bools:
 
 
 def _behind(front: Bools, space: Bools, reached: Bools, seen: Bools, step: Square) -> dict[WallKind, Bools]:
-    """Return which of some squares of wall have what behind them: floor reached or not, unseen squares, or wall alone.
-
-    front : squares with floor before them. step : the direction (columns, rows) from the floor into the wall.
-    """
+    """Return which of some squares of wall have what behind them."""
+    # Floor reached or not, unseen squares, or wall alone.
     kinds = {kind: np.zeros_like(front) for kind in WallKind}
     left, back = front.copy(), (-step[0], -step[1])
     new, solid = space & ~reached, seen & ~space
@@ -266,10 +225,7 @@ def _cast(mask: Bools, step: Square, far: int) -> Bools:
 
 
 def _niches(space: Bools) -> dict[Square, Bools]:
-    """Return for each direction (columns, rows) the squares of wall at the back of a niche of floor, seen that way.
-
-    The floor before them is at most MAX_NICHE_WIDTH wide, and wider at most MAX_NICHE_DEPTH squares before it.
-    """
+    """Return for each direction (columns, rows) the squares of wall at the back of a niche of floor, seen that way."""
     across = _run_lengths(space), _run_lengths(space.T).T  # along rows, along columns
     found = {}
     for step in EDGE_STEPS:

@@ -25,11 +25,8 @@ class FailedGrasps:
         return any(self._failed.values())
 
     def record(self, node: Node | None, model: WorldModel) -> None:
-        """Record that a grasp of an object from the robot's present square failed.
-
-        Both the present place and the middle of the square are recorded, for plans grasp from the middle. Nothing is
-        recorded for None, and for an object of unknown outline.
-        """
+        """Record that a grasp of an object from the robot's present square failed."""
+        # Both the present place and the middle of the square are recorded, for plans grasp from the middle.
         if node is None or node.polygon is None:
             return
         middle = node.polygon.centroid
@@ -38,18 +35,12 @@ class FailedGrasps:
         self._failed[node.name] = (*self._failed.get(node.name, ()), *rotated_grasps(grasps, -node.turned))
 
     def grasps(self, node: Node) -> tuple[XY, ...]:
-        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
-
-        Along the axes of the map, in the order of recording. The middle is the centroid of the outline.
-        """
+        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares."""
         return rotated_grasps(self._failed.get(node.name, ()), node.turned)
 
     def forgive(self, node: Node) -> bool:
-        """Forget the failed grasps of an object, and return whether there were any and they may be tried again.
-
-        A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
-        nothing is forgotten.
-        """
+        """Forget the failed grasps of an object, and return whether there were any and they may be tried again."""
+        # A grasp may have failed because of a slip, or for want of room that there is by now.
         again = self._retries.get(node.name, 0)
         if not self._failed.get(node.name) or again >= MAX_RETRIES:
             return False

@@ -33,11 +33,7 @@ class IntoCorner:
         self._pressing: Square | None = None  # the square, map frame, of the corner into which the robot presses
 
     def is_pressing(self, stage: Stage, situation: Situation) -> bool:
-        """Return whether the robot pressed on from the square of a corner of a stage, and is still there.
-
-        Where walls lie askew, it may then stand in a square that they fill in part. False for a stage without such a
-        goal.
-        """
+        """Return whether the robot pressed on from the square of a corner of a stage, and is still there."""
         asked = [situation.corners[side] for side in map(corner_side, stage.own) if side in situation.corners]
         squares = [_map_square(corner, situation) for corner in asked]
         if self._pressing is None or self._pressing not in squares:
@@ -46,11 +42,7 @@ class IntoCorner:
         return max(abs(there - at) for there, at in zip(self._pressing, here, strict=True)) <= math.ceil(PRESS_LENGTH)
 
     def next(self, stage: Stage, situation: Situation) -> Command | None:
-        """Return the next move into the corners of a stage, and remember it; None when it is as near as can be.
-
-        The robot is in the corner's square, or presses on from there. Also None while the orientation of the map frame
-        is uncertain, and for a stage that asks for no corner.
-        """
+        """Return the next move into the corners of a stage, and remember it; None when it is as near as can be."""
         model, here = situation.model, _square_at(situation.model.place)
         for side in () if orientation_is_uncertain(model) else [side for side in map(corner_side, stage.own) if side]:
             corner = situation.corners[side]
@@ -68,33 +60,22 @@ class IntoCorner:
         return None
 
     def _note_first(self, square: Square, dx: int, dy: int) -> bool:
-        """Note a move from a square, and return whether it is the first such move there.
-
-        square : (x, y) of the map frame.
-        dx, dy : the signs of the move along the axes of the map, each -1, 0 or 1; both 0 for the move to the halting
-            place.
-        """
+        """Note a move from a square, and return whether it is the first such move there."""
         known = (square, dx, dy) in self._done
         self._done.add((square, dx, dy))
         return not known
 
 
 def halting_place(corner: Corner, situation: Situation) -> XY:
-    """Return where in the square of a corner the robot halts: the point right beside its outer lines.
-
-    A point (x, y) of the map frame, HALT_DISTANCE squares from each of the two edges of the square that the walls are
-    on.
-    """
+    """Return where in the square of a corner the robot halts: the point right beside its outer lines."""
     view, (column, row), (sx, sy) = situation.model.view, corner.square, wall_sides(corner)
     return view.west + column + 0.5 + sx * (0.5 - HALT_DISTANCE), view.south + row + 0.5 + sy * (0.5 - HALT_DISTANCE)
 
 
 def halt_beside_walls(command: Command | None, stage: Stage, situation: Situation) -> Command | None:
-    """Return a move that ends in the square of a stage's corner, changed to end right beside the walls.
-
-    The first corner that a goal for the robot names counts. All other commands and None are returned as they are, and
-    so are moves that would then lead over squares that are not safe.
-    """
+    """Return a move that ends in the square of a stage's corner, changed to end right beside the walls."""
+    # All other commands and None are returned as they are, and so are moves that would then lead over squares that are
+    # not safe.
     side = next((side for side in map(corner_side, stage.own) if side), "")
     if not isinstance(command, Move) or side not in situation.corners or orientation_is_uncertain(situation.model):
         return command
@@ -103,10 +84,7 @@ def halt_beside_walls(command: Command | None, stage: Stage, situation: Situatio
 
 
 def lies_straight(corner: Corner, situation: Situation) -> bool:
-    """Return whether both walls of a corner lie along the grid, as far as their squares tell.
-
-    Only the STRAIGHT_LENGTH squares beside the corner along each wall are looked at.
-    """
+    """Return whether both walls of a corner lie along the grid, as far as their squares tell."""
     floor = np.pad(known_floor(situation.model), STRAIGHT_LENGTH + 1)
     column, row = (number + STRAIGHT_LENGTH + 1 for number in corner.square)
     sx, sy = wall_sides(corner)
@@ -127,10 +105,7 @@ def _map_square(corner: Corner, situation: Situation) -> Square:
 
 
 def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
-    """Return whether the straight line from the robot to a place (x, y) stays on safe squares.
-
-    place : a point of the map frame, in squares.
-    """
+    """Return whether the straight line from the robot to a place (x, y) stays on safe squares."""
     view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)
     return all(cost_maps.safe[row, column] for column, row in squares_met(here, there))

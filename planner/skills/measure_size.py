@@ -32,11 +32,7 @@ class SizeEstimator:
         self._tries: dict[str, int] = {}
 
     def poses(self, node: Node) -> Iterator[At]:
-        """Yield where to push an object by parts of a square, to measure it better; nothing when its size is known.
-
-        The best first. An object that was never moved is first pushed so far that it shows whether it moves at all.
-        Each call counts as one push; after MAX_SIZE_PUSHES nothing is yielded.
-        """
+        """Yield where to push an object by parts of a square, to measure it better; nothing when its size is known."""
         wanted = push_parts(node)
         if wanted is None or self._tries.get(node.name, 0) >= MAX_SIZE_PUSHES:
             return
@@ -54,12 +50,8 @@ class SizeEstimator:
 
 
 def push_parts(node: Node) -> tuple[float | None, float | None] | None:
-    """Return by which part of a square an object is pushed along x and y to measure it.
-
-    (dx, dy), each from -0.5 to 0.5 squares along the axes of the map; None for an axis along which the size is known.
-    None alone when the size is known, or cannot be measured: while its place is inexact or no inset is known. The
-    insets of an object are how far its sides may lie within the squares in which it was seen.
-    """
+    """Return by which part of a square an object is pushed along x and y to measure it."""
+    # None for an axis along which the size is known.
     insets = node.insets
     if insets is None or node.inexact or node.dubious:
         return None
@@ -74,19 +66,12 @@ def push_parts(node: Node) -> tuple[float | None, float | None] | None:
 
 
 def least_outline(node: Node) -> Any:
-    """Return the smallest outline that an object may have; None when that is empty.
-
-    A shapely Polygon, in squares, map frame. Its sides along the grid are moved in as far as impressions allow. Where
-    nothing tells how far, it is the believed outline.
-    """
+    """Return the smallest outline that an object may have; None when that is empty."""
     return node.polygon if node.insets is None else inset_outline(node.polygon, node.short)
 
 
 def _turned_back(node: Node) -> Iterator[At]:
-    """Yield where an object lies along the grid as it did when it was first held, the nearest place first.
-
-    At most about TURN_BACK_RANGE squares away along each axis.
-    """
+    """Yield where an object lies along the grid as it did when it was first held, the nearest place first."""
     x0, y0, _, _ = shape_at_pose(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     offsets = range(-TURN_BACK_RANGE, TURN_BACK_RANGE + 1)
     for dx, dy in sorted(product(offsets, repeat=2), key=lambda step: math.hypot(*step)):
@@ -94,12 +79,8 @@ def _turned_back(node: Node) -> Iterator[At]:
 
 
 def _steps(part: float | None) -> list[float]:
-    """Return the pushes along one axis that shift a side by a part of a square, in squares, the shorter first.
-
-    Where the side is there already, no impression told it from there: then they lead away.
-
-    part : from -0.5 to 0.5 squares; None when nothing is to be measured along the axis: then [0.0].
-    """
+    """Return the pushes along one axis that shift a side by a part of a square, in squares, the shorter first."""
+    # None when nothing is to be measured along the axis: then [0.0].
     if part is None:
         return [0.0]
     if abs(part) < NO_PUSH:
@@ -108,10 +89,8 @@ def _steps(part: float | None) -> list[float]:
 
 
 def _wanted_depth(insets: SubcellExtent, axis: int) -> float | None:
-    """Return how much of its last row an object should cover to be measured, 0 to 1 squares; None when that is known.
-
-    The last row is that of the greatest numbers: the eastern column (axis 0) or the northern row (axis 2).
-    """
+    """Return how much of its last row an object should cover to be measured, 0 to 1 squares."""
+    # None when that is known.
     (low, least), (most_low, most) = insets.least[axis : axis + 2], insets.most[axis : axis + 2]
     if not (low or least):
         if most > INSET_TOLERANCE:

@@ -23,10 +23,7 @@ CORNER_SHIFT = 2.0  # squares by which a corner may seem to move when a press sh
 
 
 class Presser:
-    """Gives the presses of one object towards one goal, and remembers whether they were stopped.
-
-    A press is a push against a wall that may be further away than believed. The goals are about corners.
-    """
+    """Gives the presses of one object towards one goal, and remembers whether they were stopped."""
 
     def __init__(self) -> None:
         """Remember no press yet."""
@@ -40,11 +37,7 @@ class Presser:
         self._of, self._left, self._last = None, [], None
 
     def is_pressed(self, goal: Fact, node: Node, situation: Situation) -> bool:
-        """Return whether an object is being pressed for a goal, or was stopped by all its presses.
-
-        Forgets the presses when the last one was not stopped, the object was lost, or the corner lies elsewhere now.
-        False when no press for this goal and object is remembered.
-        """
+        """Return whether an object is being pressed for a goal, or was stopped by all its presses."""
         if self._of != (str(goal), node.name):
             return False
         gone_on = self._last is not None and not _is_stopped(*self._last, node)
@@ -54,21 +47,14 @@ class Presser:
         return self._of is not None
 
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
-        """Note the presses of a held object that is believed to lie where a goal holds.
-
-        `next` then returns them in order. Notes nothing when the placement asks for no press, or the object is not
-        held.
-        """
+        """Note the presses of a held object that is believed to lie where a goal holds."""
+        # `next` then returns them in order.
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
             self._left, self._last = list(land.presses.values()), None
 
     def next(self, node: Node, model: WorldModel) -> Act | None:
-        """Return the next press as a push that no plan asks for, and remember it; None when none is left.
-
-        None also when those that are left are of another object: goals are asked about in their order, whichever is
-        being pressed for.
-        """
+        """Return the next press as a push that no plan asks for, and remember it; None when none is left."""
         if not self._left or self._of is None or self._of[1] != node.name:
             return None
         push = self._left.pop(0)
@@ -84,10 +70,7 @@ def _corner_of(goal: Fact, situation: Situation) -> XY:
 
 
 def _is_stopped(push: Translate, before: XY, node: Node) -> bool:
-    """Return whether a push of an object fell short by more than STOPPED_SHORT squares.
-
-    before : the middle (x, y) of the object before the push, map frame.
-    """
+    """Return whether a push of an object fell short by more than STOPPED_SHORT squares."""
     moved = np.subtract((node.polygon.centroid.x, node.polygon.centroid.y), before)
     length = math.hypot(push.dx, push.dy)
     return bool(moved @ (push.dx, push.dy) / length < length - STOPPED_SHORT)

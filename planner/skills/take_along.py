@@ -29,10 +29,7 @@ MAX_ESCAPE = 8  # squares along each axis by which an object that shuts the robo
 
 
 def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> Translate | None:
-    """Return the shortest push that brings the robot to the centre of one of some squares.
-
-    Of equally short pushes, the first of the squares; at most MAX_TRIED_PUSHES are tried.
-    """
+    """Return the shortest push that brings the robot to the centre of one of some squares."""
     pushes = _pushes_to(squares, situation)
     body = ContactBody(to_view_frame(node.polygon, situation), [situation.model.place_on_view])
     free = pushes[_workspace(node, situation).far(body, pushes)]
@@ -40,14 +37,7 @@ def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> T
 
 
 def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situation) -> Translate | None:
-    """Return the first of two pushes to an end, so that the robot comes to one of some squares between them.
-
-    Of all such pairs it is the shortest, and of equally short ones the one with the shorter first push.
-
-    Parameters
-    ----------
-    end : how far (x, y) the end lies from where the object is, in squares along the axes of the map.
-    """
+    """Return the first of two pushes to an end, so that the robot comes to one of some squares between them."""
     x, y = situation.model.place_on_view
     pushes = _pushes_to(squares, situation)
     length = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
@@ -61,10 +51,7 @@ def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situatio
 
 
 def escape_push(node: Node, situation: Situation) -> Translate | None:
-    """Return the shortest push, by whole squares, after which the held object does not shut the robot in.
-
-    It leads at most MAX_ESCAPE squares along each axis. Of equally short pushes the westernmost, then the southernmost.
-    """
+    """Return the shortest push, by whole squares, after which the held object does not shut the robot in."""
     model = situation.model
     x, y = model.place_on_view
     steps = np.array([step for step in product(range(-MAX_ESCAPE, MAX_ESCAPE + 1), repeat=2) if any(step)])
@@ -83,10 +70,7 @@ def escape_push(node: Node, situation: Situation) -> Translate | None:
 
 
 def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
-    """Return the free region near some squares, as an end for an object; None when nothing is free there.
-
-    In squares, view frame. Near is within VIEWPOINT_RADIUS rows and columns.
-    """
+    """Return the free region near some squares, as an end for an object; None when nothing is free there."""
     free = situation.cost_maps.free(0) & dilate(
         indices_to_mask(squares, situation.model.labels.shape), VIEWPOINT_RADIUS
     )
@@ -94,11 +78,7 @@ def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
 
 
 def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
-    """Return the pushes that bring the robot to the middles of some squares, the shortest first, (n, 2) float64.
-
-    At most MAX_TRIED_PUSHES of them, spread over all lengths; none longer than one move of an exploring robot, and none
-    of at most MIN_PUSH squares.
-    """
+    """Return the pushes that bring the robot to the middles of some squares, the shortest first, (n, 2) float64."""
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
     x, y = model.place_on_view
@@ -113,9 +93,6 @@ def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
 
 
 def _workspace(node: Node, situation: Situation) -> Workspace:
-    """Return what is surely free for an object and the robot that holds it, as a workspace in squares, view frame.
-
-    The object's own squares are free, the necks of forbidden doors are not.
-    """
+    """Return what is surely free for an object and the robot that holds it, as a workspace in squares, view frame."""
     free = situation.cost_maps.free(0) & ~forbidden_squares(node, situation)
     return Workspace(free | situation.model.mask(node.patch))

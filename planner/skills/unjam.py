@@ -20,29 +20,13 @@ SEARCH_RIM = 4  # squares about an object in which something may stand in its wa
 
 
 def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool = False) -> Translate:
-    """Return the push that frees an object which was stopped in a push, (dx, dy) in squares along the axes of the map.
-
-    It leads straight back, by at most RETREAT squares, and aside as well where the object is known inexactly and so may
-    pass beside what stopped it. Where it is known exactly, nothing that is known can have stopped it. A push of no
-    length is returned as it is.
-
-    Parameters
-    ----------
-    node : the object where it was stopped; its outline is known.
-    pushed : the push that was stopped, (dx, dy) in squares along the axes of the map.
-    doubted : the object was stopped again where nothing known is in its way, so it lies, or is shaped, otherwise than
-        believed. It is drawn back to the middle of the room that there is to either side then. By default an exactly
-        known object is drawn straight back, an inexactly known one aside as well where that lets it pass.
-    """
+    """Return the push that frees an object stopped in a push, (dx, dy) in squares along the axes of the map."""
     if not any(pushed):
         return pushed
     back = min(RETREAT, math.hypot(*pushed))
 
     def retreat(aside: float) -> Translate:
-        """Return the push back and aside, in squares along the axes of the map.
-
-        aside : squares to the left of `pushed`; negative to the right.
-        """
+        """Return the push back and aside, in squares along the axes of the map."""
         return pushed.steered(-back, aside)
 
     if not (node.inexact or doubted):
@@ -50,10 +34,7 @@ def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool
     walls, body, onward = _walls_near(node, model), ContactBody(node.polygon), pushed.steered(back + ROOM_AHEAD, 0.0)
 
     def passes(aside: float) -> bool:
-        """Return whether the object can be drawn back so, and then pushed on until ROOM_AHEAD squares beyond the stop.
-
-        aside : squares to the left of `pushed`; negative to the right.
-        """
+        """Return whether the object can be drawn back so, then pushed on until ROOM_AHEAD squares beyond the stop."""
         push = retreat(aside)
         free = walls.first_contact(body, push).fraction == 1
         return free and walls.first_contact(body.after(push), onward).fraction == 1
@@ -73,10 +54,7 @@ def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool
 
 
 def _walls_near(node: Node, model: WorldModel) -> Obstacles:
-    """Return all squares near an object that are surely occupied, but for its own, as obstacles in squares, map frame.
-
-    Near is within SEARCH_RIM + ROOM_AHEAD squares of its bounding box.
-    """
+    """Return all squares near an object that are surely occupied, but for its own, as obstacles in squares."""
     view, reach = model.view, SEARCH_RIM + ROOM_AHEAD
     x0, y0, x1, y1 = node.polygon.bounds
     rows, columns = np.nonzero((view.state == OCCUPIED) & ~model.mask(node.patch))

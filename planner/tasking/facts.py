@@ -27,18 +27,12 @@ Way = tuple[str, str, str]  # a thing, the place that it comes from, the place t
 
 @dataclass(frozen=True)
 class Answers:
-    """The answers of geometry so far.
+    """The answers of geometry so far."""
 
-    Attributes
-    ----------
-    commands : about how many commands a way takes, as geometry found it in the state where it was asked last.
-    hoped : the ways over floor that is only hoped to be free.
-    refutations : the refuted ways, in the order in which they were refuted.
-    """
-
+    # About how many commands a way takes, as geometry found it in the state where it was asked last
     commands: Mapping[Way, int] = field(default_factory=dict)
-    hoped: AbstractSet[Way] = frozenset()
-    refutations: tuple[RefutedStep, ...] = ()
+    hoped: AbstractSet[Way] = frozenset()  # the ways over floor that is only hoped to be free
+    refutations: tuple[RefutedStep, ...] = ()  # the refuted ways, in the order in which they were refuted
 
     @property
     def found(self) -> list[str]:
@@ -47,17 +41,11 @@ class Answers:
 
 
 class Overlap(NamedTuple):
-    """Two places of two things that overlap.
+    """Two places of two things that overlap."""
 
-    Attributes
-    ----------
-    thing, place : one thing and its place.
-    other, other_place : the other thing, later by name, and its place.
-    """
-
-    thing: str
+    thing: str  # one thing and its place
     place: str
-    other: str
+    other: str  # the other thing, later by name, and its place
     other_place: str
 
     def __str__(self) -> str:
@@ -72,13 +60,7 @@ def problem_facts(
     spots: AbstractSet[tuple[str, str]],
     overlaps: Iterable[Overlap],
 ) -> tuple[str, ...]:
-    """Return the facts of a problem that stay the same while answers come in, without full stops.
-
-    problem : things, places and goals.
-    aside : by object and place: the places where an object is out of the way.
-    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
-    overlaps : the places of two things that overlap.
-    """
+    """Return the facts of a problem that stay the same while answers come in, without full stops."""
     facts = [f"place({ROBOT},{HERE})"]
     facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
     facts += [f"place({name},{place})" for name, place in problem.places if place != HERE]
@@ -92,11 +74,7 @@ def problem_facts(
 
 
 def goal_facts(goals: Sequence[PlacedGoal], waiting: Sequence[str]) -> Iterator[str]:
-    """Yield goals and wishes with what they are about, whether they hold, and their order, as facts without full stops.
-
-    goals : in the order of the task. waiting : the names of those of which it is open what they are about, or where
-    they hold.
-    """
+    """Yield goals and wishes what they are about, whether they hold, and their order, as facts without full stops."""
     ranks: dict[str, int] = {}
     orders: dict[str, int] = {}
     for number, goal in enumerate(goals):
@@ -145,11 +123,7 @@ def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
 
 
 def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = frozenset()) -> Iterator[Overlap]:
-    """Yield the exact places of two things that overlap: where they lie now, poses and spots; regions do not count.
-
-    problem : things, places and goals.
-    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
-    """
+    """Yield the exact places of two things that overlap: where they lie now, poses and spots; regions do not count."""
     names, outlines = [], []
     for name, place, outline in _exact_places(problem, spots):
         names.append((name, place))
@@ -164,10 +138,7 @@ def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = froz
 
 
 def _exact_places(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[tuple[str, str, Any]]:
-    """Yield thing, place and outline there, where things lie now, at poses and at spots; regions are left out.
-
-    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
-    """
+    """Yield thing, place and outline there, where things lie now, at poses and at spots; regions are left out."""
     for name, lying in problem.state.things.items():
         yield name, HERE, lying.outline
     for (name, place), end in problem.places.items():
@@ -191,10 +162,7 @@ def _part_facts(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> It
 
 
 def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
-    """Return the things that lie now where another thing may have to lie, each once.
-
-    overlaps : the places of two things that overlap.
-    """
+    """Return the things that lie now where another thing may have to lie, each once."""
     found = [one.thing if one.place == HERE else one.other for one in overlaps if HERE in (one.place, one.other_place)]
     return list(dict.fromkeys(found))
 

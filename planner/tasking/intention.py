@@ -37,54 +37,32 @@ MORE_FLOOR = 1.25  # times the floor for which there was no plan, with which it 
 
 
 class NextErrand(NamedTuple):
-    """The next errand of a plan, and the end that it leads to.
+    """The next errand of a plan, and the end that it leads to."""
 
-    Attributes
-    ----------
-    errand : the step of the plan.
-    node : the object that is brought.
-    end : where it shall lie, in squares, view frame.
-    goal : the goal or wish whose own end this is; None for a spot that the planner chose.
-    end_name : the name of that end among the ends of the goal; "" for a spot.
-    turned : by how many degrees the object had been turned when the plan was made.
-    """
-
-    errand: Errand
-    node: Node
-    end: End
-    goal: Fact | None
-    end_name: str
-    turned: float
+    errand: Errand  # the step of the plan
+    node: Node  # the object that is brought
+    end: End  # where it shall lie, in squares, view frame
+    goal: Fact | None  # the goal or wish whose own end this is; None for a spot that the planner chose
+    end_name: str  # the name of that end among the ends of the goal; "" for a spot
+    turned: float  # by how many degrees the object had been turned when the plan was made
 
 
 @dataclass(frozen=True)
 class _Kept:
-    """A plan with what it rests on; all geometry in squares, map frame.
+    """A plan with what it rests on; all geometry in squares, map frame."""
 
-    Attributes
-    ----------
-    plan : the plan.
-    stage : for which it was made.
-    names : the things that may be carried.
-    places : the places of goals that were known.
-    spots : the end of each place that the planner chose, by object and place.
-    bounds : where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name.
-    ways : the squares (x, y) that each errand crosses, (n, 2).
-    turned : by how many degrees each thing had been turned when the plan was made.
-    led_round : the middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans.
-    number : the errand that is done now.
-    """
-
-    plan: TaskPlan
-    stage: Stage
-    names: tuple[str, ...]
-    places: frozenset[tuple[str, str]]
-    spots: Mapping[tuple[str, str], End]
+    plan: TaskPlan  # the plan
+    stage: Stage  # for which it was made
+    names: tuple[str, ...]  # the things that may be carried
+    places: frozenset[tuple[str, str]]  # the places of goals that were known
+    spots: Mapping[tuple[str, str], End]  # the end of each place that the planner chose, by object and place
+    # Where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name
     bounds: tuple[Mapping[str, tuple[float, ...]], ...]
-    ways: tuple[Any, ...]
-    turned: Mapping[str, float]
+    ways: tuple[Any, ...]  # the squares (x, y) that each errand crosses, (n, 2)
+    turned: Mapping[str, float]  # by how many degrees each thing had been turned when the plan was made
+    # The middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans
     led_round: tuple[tuple[XY, ...], ...] = ()
-    number: int = 0
+    number: int = 0  # the errand that is done now
 
     def means_what_is_bound(self, problem: TaskProblem) -> bool:
         """Return whether each parameter still means in a problem what it means in the plan."""
@@ -93,20 +71,10 @@ class _Kept:
 
 
 class Intention:
-    """Owns the task plan under way, and what was tried in vain.
-
-    Attributes
-    ----------
-    where : tells where goals hold.
-    blamed : the places of users' rules because of which the plan that was made last does not attain all goals.
-    """
+    """Owns the task plan under way, and what was tried in vain."""
 
     def __init__(self, where: WhereGoalsHold, pull: bool = True) -> None:
-        """Make an intention without a plan.
-
-        where : tells where goals hold.
-        pull : whether a held object may be pulled.
-        """
+        """Make an intention without a plan."""
         self.where, self._pull = where, pull
         self._kept: _Kept | None = None
         self._under_way: TaskPlan | None = None  # its first step is done amid a turn, while no plan can be made
@@ -129,10 +97,7 @@ class Intention:
 
     @property
     def followed(self) -> TaskPlan | None:
-        """The plan whose present step is done, from that step on: also one that settles something; None for none.
-
-        A thing that is held amid a turn is still brought where the plan from before the turn says.
-        """
+        """The plan whose present step is done, from that step on: also one that settles something; None for none."""
         return self.plan or self._settling or self._under_way
 
     @property
@@ -141,15 +106,7 @@ class Intention:
         return self._attempt if self._kept is None else None
 
     def update(self, stage: Stage, situation: Situation, avoid: Mapping[str, Any], turn: float) -> Situation:
-        """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters.
-
-        There is none while it is open what a goal means or where it holds (`settle`).
-
-        Parameters
-        ----------
-        avoid : by the names of objects, the grasps that failed.
-        turn : how many commands a turn counts for.
-        """
+        """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters."""
         stage = self._without_dropped(stage)
         followed = self.followed if stage == self._stage else None
         self._problem = problem_of(stage, situation, self.where)
@@ -171,14 +128,8 @@ class Intention:
         return situation
 
     def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, str]:
-        """Plan what settles what is open; return its first step, or "" and the words for what users' rules forbid then.
-
-        Parameters
-        ----------
-        stage, situation : as for `update`.
-        given : what is not known, what activities came to, and what the robot is stuck with, as facts without full
-            stops.
-        """
+        """Plan what settles what is open."""
+        # Return its first step, or "" and the words for what users' rules forbid then.
         stage = self._without_dropped(stage)
         problem = problem_of(stage, situation, self.where)
         refuted = () if self._attempt is None else self._attempt.refutations
@@ -193,10 +144,8 @@ class Intention:
         return {} if self._kept is None else dict(self._kept.plan.meanings)
 
     def refused_meanings(self, stage: Stage, situation: Situation) -> frozenset[tuple[str, str]]:
-        """Return the (parameter, object) pairs bound now that users' rules leave to no plan; none while there is one.
-
-        stage, situation : as for `update`, which is called before.
-        """
+        """Return the (parameter, object) pairs bound now that users' rules leave to no plan."""
+        # None while there is one.
         attempt = self.attempt
         if attempt is None or not attempt.proved or not self.blamed:
             return frozenset()
@@ -205,12 +154,7 @@ class Intention:
         return frozenset((x, name) for x, name in bound if situation.model.object(name) is not None)
 
     def next_errand(self, stage: Stage, situation: Situation) -> NextErrand | None:
-        """Return the next errand of the plan; None when there is no plan, or the next step is the robot's own.
-
-        Parameters
-        ----------
-        stage, situation : as for `update`, which is called before.
-        """
+        """Return the next errand of the plan; None when there is no plan, or the next step is the robot's own."""
         kept, problem, stage = self._kept, self._problem, self._without_dropped(stage)
         if kept is None or problem is None or kept.number >= len(kept.plan.errands):
             return None
@@ -239,14 +183,7 @@ class Intention:
         return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 
     def failed(self, errand: Errand, situation: Situation, why: str) -> None:
-        """Note that an errand cannot be done as things lie now; the plan is made anew without it.
-
-        A wish is dropped for good.
-
-        Parameters
-        ----------
-        errand : the present errand. why : why it cannot be done, in words.
-        """
+        """Note that an errand cannot be done as things lie now; the plan is made anew without it."""
         wish = None if self._kept is None else wish_of_place(errand.place, self._kept.stage)
         self._dropped |= set() if wish is None else {wish}
         others = () if self._problem is None else sorted(self._problem.nodes.keys() - {errand.subject})
@@ -367,10 +304,7 @@ class Intention:
 
 
 def with_meanings(situation: Situation, meanings: Mapping[str, str]) -> Situation:
-    """Return a situation whose parameters mean what a plan means by them; what they meant before may be meant, too.
-
-    meanings : the object that each parameter of the task means.
-    """
+    """Return a situation whose parameters mean what a plan means by them; what they meant before may be meant, too."""
     binding = {**situation.binding, **meanings}
     as_well = {
         parameter: tuple(name for name in (situation.binding[parameter], *others) if name != binding[parameter])

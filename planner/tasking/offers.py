@@ -27,10 +27,7 @@ from planner.oracles.spots import (
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
-    """Return the problem with ends for things that are where they shall be, so that they can be brought back there.
-
-    problem : things, places and goals.
-    """
+    """Return the problem with ends for things that are where they shall be, so that they can be brought back there."""
     there = [goal.subject for goal in problem.goals if goal.holds and goal.subject in problem.nodes]
     there += [name for name, place in problem.fulfils if place == HERE and name in problem.nodes]
     ends = {(name, HERE): end_about(problem.state.things[name].outline) for name in there}
@@ -38,10 +35,7 @@ def with_returns(problem: TaskProblem) -> TaskProblem:
 
 
 def end_about(outline: Any) -> Inside:
-    """Return the end of a thing at one spot: the squares that its outline there covers, with SPOT_SLACK about them.
-
-    outline : shapely Polygon, in squares; the end is in the same frame.
-    """
+    """Return the end of a thing at one spot: the squares that its outline there covers, with SPOT_SLACK about them."""
     west, south, east, north = outline.bounds
     x, y = math.floor(west), math.floor(south)
     mask = squares(Translate(-float(x), -float(y)).carry(outline), math.ceil(east) - x, math.ceil(north) - y)
@@ -50,22 +44,11 @@ def end_about(outline: Any) -> Inside:
 
 
 class Offers:
-    """Remembers what is in the way of what, and for which things places were offered.
-
-    Attributes
-    ----------
-    aside : by object and place: the offered places where an object is out of the way.
-    spots : by object and place: all offered places.
-    shape : (rows, columns) of the floors.
-    """
+    """Remembers what is in the way of what, and for which things places were offered."""
 
     def __init__(self, floors: Floors, rooms: Ints | None = None) -> None:
-        """Make offers for some floors; nothing is in the way.
-
-        floors : the squares that may be used, with a margin.
-        rooms : the number of the room of each square of the view; then places are offered in the room of a thing, too,
-            for rules may want it there. None for places anywhere.
-        """
+        """Make offers for some floors; nothing is in the way."""
+        # None for places anywhere.
         self._rooms = None if rooms is None else np.pad(rooms, floors.margin)
         sure = floors.by_kind[FloorKind.SURE]
         self.aside: list[tuple[str, str]] = []
@@ -83,10 +66,7 @@ class Offers:
         self._needed |= way
 
     def keep_way(self, name: str, start: Any, end: Any) -> None:
-        """Note that a thing must find a way from an outline to another one, shapely Polygons, frame of the floors.
-
-        The surest floor counts on which it finds one. Nothing is noted where it is turned on the way.
-        """
+        """Note that a thing must find a way from an outline to another one, shapely Polygons, frame of the floors."""
         ways = (kept_way_of(start, end, self._floors.by_kind[kind]) for kind in FloorKind)
         found = next((way for way in ways if way is not None and way.is_open), None)
         noted = self._kept.setdefault(name, [])
@@ -98,14 +78,7 @@ class Offers:
         self._in_way += [name for name in names if name not in self._in_way]
 
     def places(self, problem: TaskProblem) -> TaskProblem | None:
-        """Return the problem with places for things that are in the way; None when none is new.
-
-        For a thing that has a goal in a region, places within that region are offered, too.
-
-        Parameters
-        ----------
-        problem : things, places and goals.
-        """
+        """Return the problem with places for things that are in the way; None when none is new."""
         new: dict[tuple[str, str], End] = {}
         fulfils = dict(problem.fulfils)
         for name in [name for name in self._in_way if name not in self._offered]:
@@ -122,13 +95,7 @@ class Offers:
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
 
     def further_places(self, problem: TaskProblem) -> TaskProblem | None:
-        """Return the problem with places that things in the way reach less easily; None for no new ones.
-
-        Those aside that they reach only once others are moved, and the corners of the regions of their goals, turned by
-        quarters.
-
-        problem : things, places and goals, with the places that `places` has offered.
-        """
+        """Return the problem with places that things in the way reach less easily; None for no new ones."""
         new: dict[tuple[str, str], End] = {}
         fulfils = dict(problem.fulfils)
         floor = self._floors.by_kind[FloorKind.SURE]
@@ -148,10 +115,7 @@ class Offers:
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
 
     def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:
-        """Return places on sure floor, off the ways of others where that can be, and off other things.
-
-        Those to which it can be pushed past the other things; where there are none, those that need others moved first.
-        """
+        """Return places on sure floor, off the ways of others where that can be, and off other things."""
         floor = self._floors.by_kind[FloorKind.SURE]
         others = [self._carry(one.outline) for other, one in problem.state.things.items() if other != name]
         open_floor = floor & ~covered_by(others, self.shape)

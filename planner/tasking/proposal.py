@@ -16,38 +16,22 @@ UNMET_PLAN = "plan"  # what is unmet where users' rules leave no plan at all, as
 
 
 class Proposal(NamedTuple):
-    """A plan as the encoding proposes it.
+    """A plan as the encoding proposes it."""
 
-    Attributes
-    ----------
-    errands : its steps, in order.
-    unmet : the goals that do not hold after them, and what is not settled.
-    facts : what the encoding was given.
-    missed : the wishes that do not hold after them, each with the commands that it may cost.
-    meanings : the object that each parameter of the task means: (parameter, object), sorted.
-    proved : whether the search of clingo ended, so that no plan is cheaper by what the facts say.
-    left : the steps that may settle something, whether they are done or not.
-    """
-
-    errands: tuple[Errand, ...]
-    unmet: tuple[str, ...]
-    facts: tuple[str, ...]
-    missed: Mapping[str, int]
+    errands: tuple[Errand, ...]  # its steps, in order
+    unmet: tuple[str, ...]  # the goals that do not hold after them, and what is not settled
+    facts: tuple[str, ...]  # what the encoding was given
+    missed: Mapping[str, int]  # the wishes that do not hold after them, each with the commands that it may cost
+    # The object that each parameter of the task means: (parameter, object), sorted
     meanings: tuple[tuple[str, str], ...] = ()
-    proved: bool = True
-    left: tuple[str, ...] = ()
+    proved: bool = True  # whether the search of clingo ended, so that no plan is cheaper by what the facts say
+    left: tuple[str, ...] = ()  # the steps that may settle something, whether they are done or not
 
 
 def propose(
     facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] = (), without: tuple[str, ...] = ()
 ) -> Proposal:
-    """Return the plan that the encoding finds cheapest; the same answer for the same facts.
-
-    facts : as planner/asp/task wants them, without full stops.
-    rules : the user's own encodings.
-    about : what the names of goals mean, in words; for the record of decisions alone.
-    without : the places of users' rules that are left out.
-    """
+    """Return the plan that the encoding finds cheapest; the same answer for the same facts."""
     answer = solve_within([TASK_ENCODING, *rules], facts, MAX_PLAN_CONFLICTS, about, without)
     if answer.atoms is None:  # rules leave no plan of that length, or the search was cut off before it found one
         return Proposal((), (UNMET_PLAN,), facts, {}, proved=answer.proved)

@@ -21,10 +21,7 @@ DOOR_COMMANDS = 1  # that planner/asp/task/go.lp reckons for a pass through a do
 
 
 def doors_at(middles: Sequence[XY], situation: Situation) -> frozenset[str]:
-    """Return the names that doors at some places bear now.
-
-    middles : the middles (x, y) of the doors as they were, in squares, map frame.
-    """
+    """Return the names that doors at some places bear now."""
     view = situation.model.view
     places = [(x - view.west, y - view.south) for x, y in middles]
     doors = situation.rooms.doors
@@ -32,14 +29,7 @@ def doors_at(middles: Sequence[XY], situation: Situation) -> frozenset[str]:
 
 
 def doors_led_round(made: MadePlan, situation: Situation) -> tuple[tuple[XY, ...], ...]:
-    """Return the doors that each errand of a plan does not pass; () when no users' rule is about task plans.
-
-    Rules may give doors a price, or forbid them for some errands. Then the way of an errand is that of the plan.
-
-    For each errand the middles (x, y) of such doors, in squares, map frame.
-
-    made : the plan, with the facts from which it was made.
-    """
+    """Return the doors that each errand of a plan does not pass; () when no users' rule is about task plans."""
     if not rules_reach(TASK_ENCODING.stem, situation.rules):
         return ()
     doors = _doors_of(made, situation)
@@ -59,23 +49,15 @@ def _doors_of(made: MadePlan, situation: Situation) -> dict[str, XY]:
 
 
 class DoorRules(NamedTuple):
-    """The doors that users' rules close or price, whatever the plan.
+    """The doors that users' rules close or price, whatever the plan."""
 
-    Attributes
-    ----------
-    closed : the names of doors that no plan passes.
-    prices : by the name of a door: the commands that rules add to a pass through it, where they add any.
-    """
-
-    closed: frozenset[str] = frozenset()
+    closed: frozenset[str] = frozenset()  # the names of doors that no plan passes
+    # By the name of a door: the commands that rules add to a pass through it, where they add any
     prices: Mapping[str, int] = {}
 
 
 def rules_about_doors(situation: Situation) -> DoorRules:
-    """Return which doors users' rules close to the robot, and which they price; nothing without such rules.
-
-    Each door is asked about by itself, also where no plan can be made yet: the robot looks about under the same rules.
-    """
+    """Return which doors users' rules close to the robot, and which they price; nothing without such rules."""
     if not rules_reach(TASK_ENCODING.stem, situation.rules):
         return DoorRules()
     facts = _facts_about_doors(situation)
@@ -123,10 +105,7 @@ def _answer(facts: tuple[str, ...], situation: Situation) -> BoundedAnswer:
 
 
 def rules_without_plan(made: MadePlan, situation: Situation) -> tuple[str, ...]:
-    """Return the places of users' rules because of which a plan does not attain all goals, such as `rules.lp:3`.
-
-    made : the plan, with the facts from which it was made.
-    """
+    """Return the places of users' rules because of which a plan does not attain all goals, such as `rules.lp:3`."""
     rules = situation.rules
     if not made.facts or not made.plan.unmet or not rules_reach(TASK_ENCODING.stem, rules):
         return ()

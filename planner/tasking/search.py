@@ -39,24 +39,15 @@ LEAST_WALK = 1  # commands of a walk of which nothing is known, as in the encodi
 
 
 class MadePlan(NamedTuple):
-    """A plan with the geometry that it rests on, in squares, view frame.
+    """A plan with the geometry that it rests on, in squares, view frame."""
 
-    Attributes
-    ----------
-    plan : the plan.
-    places : the end of each place of each object: those of the goals, and those that the search offered.
-    states : how everything lies at the beginning of each errand.
-    ways : the squares that each errand crosses, (rows, columns) bool with a margin.
-    margin : squares that were added to the arrays of the view on each side.
-    facts : what the encoding was given, without full stops.
-    """
-
-    plan: TaskPlan
+    plan: TaskPlan  # the plan
+    # The end of each place of each object: those of the goals, and those that the search offered
     places: Mapping[tuple[str, str], End]
-    states: tuple[TableState, ...] = ()
-    ways: tuple[Bools, ...] = ()
-    margin: int = 0
-    facts: tuple[str, ...] = ()
+    states: tuple[TableState, ...] = ()  # how everything lies at the beginning of each errand
+    ways: tuple[Bools, ...] = ()  # the squares that each errand crosses, (rows, columns) bool with a margin
+    margin: int = 0  # squares that were added to the arrays of the view on each side
+    facts: tuple[str, ...] = ()  # what the encoding was given, without full stops
 
 
 class PlanSearch:
@@ -70,13 +61,7 @@ class PlanSearch:
         tried: Sequence[RefutedStep] = (),
         meant: Mapping[str, str] = NO_MEANINGS,
     ) -> None:
-        """Make a search that knows nothing but what was tried.
-
-        problem : things, places and goals.
-        oracle : verifies the steps.
-        tried : steps that failed when they were carried out, as refutations.
-        meant : the object that the plan before meant by each parameter of the task.
-        """
+        """Make a search that knows nothing but what was tried."""
         self._meant = dict(meant)
         self._problem, self._situation, self._oracle = with_returns(problem), situation, oracle
         self._answers = Answers(refutations=tuple(tried))
@@ -167,12 +152,7 @@ class PlanSearch:
         return CHANGE_OF_MEANING * changed
 
     def _offer(self, unmet: Sequence[str]) -> bool:
-        """Offer places for things that are in the way; return whether any is new.
-
-        A goal of users' rules may be about any thing: while one is unmet, places are offered for all.
-
-        unmet : the goals that the plan does not attain.
-        """
+        """Offer places for things that are in the way; return whether any is new."""
         if not {goal.name for goal in self._problem.goals}.issuperset(unmet):
             self._offers.note_in_way(list(self._problem.nodes))
         return self._take(self._offers.places(self._problem))
@@ -317,13 +297,5 @@ def make_plan(
     tried: Sequence[RefutedStep] = (),
     meant: Mapping[str, str] = NO_MEANINGS,
 ) -> MadePlan:
-    """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all of them.
-
-    Parameters
-    ----------
-    problem : things, places and goals.
-    oracle : verifies the steps.
-    tried : steps that failed when they were carried out, as refutations.
-    meant : the object that the plan before meant by each parameter of the task.
-    """
+    """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all of them."""
     return PlanSearch(problem, situation, oracle, tried, meant).run()

@@ -28,18 +28,14 @@ DestinationFunction = Callable[[Fact, Situation], Destination]
 
 
 class WhereGoalsHold(NamedTuple):
-    """The functions that tell where goals hold.
+    """The functions that tell where goals hold."""
 
-    Attributes
-    ----------
-    place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
-        frame) and the situation.
-    origin : returns where the object of a parameter lay at first, from the parameter, the object and the situation.
-    destination : returns the squares on which a goal holds for the robot, from the goal and the situation.
-    """
-
+    # Returns where a goal holds for an object, from the goal, the object, where its middle was at first (map frame) and
+    # the situation
     place: PlaceFunction
+    # Returns where the object of a parameter lay at first, from the parameter, the object and the situation
     origin: OriginFunction
+    # Returns the squares on which a goal holds for the robot, from the goal and the situation
     destination: DestinationFunction
 
     def of(self, goal: Fact, node: Node, situation: Situation) -> Placement:
@@ -48,13 +44,7 @@ class WhereGoalsHold(NamedTuple):
 
 
 def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> TaskProblem | None:
-    """Return the problem of a stage; None while a thing that is askew is in hand: it is set down first.
-
-    Goals are waiting while it is open what they mean or where they hold.
-    Where users' rules are about task plans, places where a goal may hold will do: no thing is taken against a rule.
-
-    where : tells where goals hold.
-    """
+    """Return the problem of a stage; None while a thing that is askew is in hand: it is set down first."""
     model = situation.model
     held = model.object(model.held or "")
     if held is not None and held.polygon is not None and not is_grid_aligned(held.polygon):
@@ -121,18 +111,12 @@ def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> Tas
 
 
 def waiting_goal(name: str, goal: Fact, subject: str = "") -> PlacedGoal:
-    """Return a goal of which it is open what it is about or where it holds.
-
-    subject : the object that its parameter is bound to; "" for none.
-    """
+    """Return a goal of which it is open what it is about or where it holds."""
     return PlacedGoal(name, str(goal), subject, False, None, str(goal.args[0]))
 
 
 def _also_meant(goal: Fact, things: Mapping[str, Node], situation: Situation) -> list[Node]:
-    """Return the things that the parameter of a goal may mean besides the one that it is bound to.
-
-    While a thing is in hand, nothing but that is meant by the parameter that is bound to it.
-    """
+    """Return the things that the parameter of a goal may mean besides the one that it is bound to."""
     parameter, held = str(goal.args[0]), situation.model.held
     if held is not None and situation.binding.get(parameter) == held:
         return []
@@ -142,10 +126,7 @@ def _also_meant(goal: Fact, things: Mapping[str, Node], situation: Situation) ->
 def _meanings(
     things: Mapping[str, Node], unlike: set[tuple[str, str]], situation: Situation
 ) -> Mapping[str, tuple[str, ...]]:
-    """Return the objects that each parameter may mean where that are several, the one that it is bound to first.
-
-    things : that may be carried, by name. unlike : parameters with things that they do not mean after all.
-    """
+    """Return the objects that each parameter may mean where that are several, the one that it is bound to first."""
     model = situation.model
     found: dict[str, tuple[str, ...]] = {}
     for parameter, bound in sorted(situation.binding.items()):
@@ -173,18 +154,12 @@ def _numbered_wishes(stage: Stage) -> Iterator[tuple[str, Fact, int]]:
 
 
 def goal_of_place(place: str, stage: Stage) -> tuple[str, Fact] | None:
-    """Return the goal or wish for an object that a place belongs to, with its name; None for a spot aside.
-
-    place : the name of the place, as `place_name` makes it.
-    """
+    """Return the goal or wish for an object that a place belongs to, with its name; None for a spot aside."""
     return next(((name, goal) for name, goal, _ in _numbered(stage) if place.startswith(f"{name}_")), None)
 
 
 def wish_of_place(place: str, stage: Stage) -> Fact | None:
-    """Return the wish that a place belongs to; None when it is the place of a goal, or a spot.
-
-    place : the name of the place, as `place_name` makes it.
-    """
+    """Return the wish that a place belongs to; None when it is the place of a goal, or a spot."""
     return next((goal for name, goal, _ in _numbered_wishes(stage) if place.startswith(f"{name}_")), None)
 
 

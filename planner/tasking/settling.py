@@ -20,16 +20,9 @@ def plan_that_settles(
     given: Sequence[str],
     refuted: tuple[RefutedStep, ...] = (),
 ) -> tuple[TaskPlan, str]:
-    """Return the plan of the encoding where something is open, and words for what users' rules keep out of it.
-
-    Geometry is not asked about it: what is settled changes all that follows. Goals that depend on what is settled are
-    unmet in it. Users' rules that no such plan fulfils are left out: it is not the end. The words
-    name the steps that may settle something, and the rules because of which there is none; "" where there is one.
-
-    problem : things, places and goals; None while they are not known.
-    given : what is not known, what activities came to, and what the robot is stuck with, as facts without full stops.
-    refuted : the steps that geometry refuted.
-    """
+    """Return the plan of the encoding where something is open, and words for what users' rules keep out of it."""
+    # The words name the steps that may settle something, and the rules because of which there is none; "" where there
+    # is one.
     facts = list(given)
     if situation.model.held is not None:
         facts.append(f"holds({situation.model.held})")
@@ -67,12 +60,7 @@ def _settles_nothing(atoms: Sequence[Any]) -> bool:
 
 
 def step_that_settles(plan: TaskPlan, stuck: bool) -> Errand | None:
-    """Return the first step of a plan that settles something; None for none.
-
-    Where an object is brought to where a goal holds before that, it is to pursue that goal.
-
-    plan : from `plan_that_settles`. stuck : whether the robot is stuck: then nothing is brought anywhere.
-    """
+    """Return the first step of a plan that settles something; None for none."""
     for errand in plan.errands:
         if errand.settles:
             return errand

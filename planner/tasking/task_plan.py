@@ -14,27 +14,20 @@ GOAL_PLACE = re.compile(r"(g[0-9]+)_")  # the beginning of the name of a place w
 
 @dataclass(frozen=True)
 class Errand:
-    """One step of a task plan: something is brought to a place, the robot goes there itself, or settles something.
+    """One step of a task plan: something is brought to a place, the robot goes there itself, or settles something."""
 
-    Attributes
-    ----------
-    action : carry (to a place where a goal holds), clear (out of the way) or arrive (the robot itself); or a step that
-        settles something, such as find (planner/asp/task/settling.lp).
-    subject : the object, or `utak`; what is settled, such as the name of a goal, for a step that settles something.
-    place : the name of the place; "" for a step that settles something.
-    doors : the doors that are passed on the way, sorted.
-    certainty : what geometry said: the way is sure, or hoped to be free; None when it was not asked.
-    commands : about how many commands it takes.
-    avoid : grasps, as (x, y) of the robot from the middle of the object as it lies before, with which it would shut the
-        robot in at its place.
-    """
-
+    # Carry (to a place where a goal holds), clear (out of the way) or arrive (the robot itself); or a step that settles
+    # something, such as find (planner/asp/task/settling.lp).
     action: str
+    # The object, or `utak`; what is settled, such as the name of a goal, for a step that settles something
     subject: str
-    place: str = ""
-    doors: tuple[str, ...] = ()
+    place: str = ""  # the name of the place; "" for a step that settles something
+    doors: tuple[str, ...] = ()  # the doors that are passed on the way, sorted
+    # What geometry said: the way is sure, or hoped to be free; None when it was not asked
     certainty: Certainty | None = None
-    commands: int = 0
+    commands: int = 0  # about how many commands it takes
+    # Grasps, as (x, y) of the robot from the middle of the object as it lies before, with which it would shut the robot
+    # in at its place
     avoid: tuple[XY, ...] = ()
 
     @property
@@ -56,24 +49,17 @@ class Errand:
 
 @dataclass(frozen=True)
 class RefutedStep:
-    """A refuted step, with the least circumstances in which geometry refutes it.
+    """A refuted step, with the least circumstances in which geometry refutes it."""
 
-    Attributes
-    ----------
-    subject, origin, place : what was to be brought from where to where.
-    given : the places of other objects on which the refutation rests: (object, place), sorted.
-    stood : the object beside which the robot stood ("start" for where it is now); None when that does not matter.
-    shut : the doors that were not passed, on which it rests; sorted.
-    found : what geometry found, in words; "" where it was not asked.
-    """
-
-    subject: str
+    subject: str  # what was to be brought from where to where
     origin: str
     place: str
+    # The places of other objects on which the refutation rests: (object, place), sorted
     given: tuple[tuple[str, str], ...] = ()
+    # The object beside which the robot stood ("start" for where it is now); None when that does not matter
     stood: str | None = None
-    shut: tuple[str, ...] = ()
-    found: str = field(default="", compare=False)
+    shut: tuple[str, ...] = ()  # the doors that were not passed, on which it rests; sorted
+    found: str = field(default="", compare=False)  # what geometry found, in words; "" where it was not asked
 
     @property
     def step(self) -> str:
@@ -108,32 +94,21 @@ class RefutedStep:
 
 @dataclass(frozen=True)
 class TaskPlan:
-    """A plan for all goals of a stage.
+    """A plan for all goals of a stage."""
 
-    Attributes
-    ----------
-    errands : the steps, in order.
-    unmet : the goals that do not hold at its end; empty for a whole plan.
-    cost : about how many commands it takes.
-    least : a number of commands below which no plan is known to stay, by the estimates of the search.
-    proved : whether the search ended with it; False when its bound on rounds was reached: then it is the best plan that
-        was found.
-    refutations : the steps that geometry refuted on the way to it.
-    rounds : how many plans were made.
-    goals : the goals of the stage, in the order of the task, as they were when it was made.
-    missed : the wishes that do not hold at its end.
-    meanings : the objects that parameters of the task mean in it: (parameter, object), sorted.
-    """
-
-    errands: tuple[Errand, ...]
-    unmet: tuple[str, ...] = ()
-    cost: int = 0
-    least: int = 0
+    errands: tuple[Errand, ...]  # the steps, in order
+    unmet: tuple[str, ...] = ()  # the goals that do not hold at its end; empty for a whole plan
+    cost: int = 0  # about how many commands it takes
+    least: int = 0  # a number of commands below which no plan is known to stay, by the estimates of the search
+    # Whether the search ended with it; False when its bound on rounds was reached: then it is the best plan that was
+    # found
     proved: bool = True
-    refutations: tuple[RefutedStep, ...] = ()
-    rounds: int = 0
+    refutations: tuple[RefutedStep, ...] = ()  # the steps that geometry refuted on the way to it
+    rounds: int = 0  # how many plans were made
+    # The goals of the stage, in the order of the task, as they were when it was made
     goals: tuple[PlacedGoal, ...] = ()
-    missed: tuple[str, ...] = ()
+    missed: tuple[str, ...] = ()  # the wishes that do not hold at its end
+    # The objects that parameters of the task mean in it: (parameter, object), sorted
     meanings: tuple[tuple[str, str], ...] = ()
 
     @property
@@ -143,10 +118,7 @@ class TaskPlan:
 
     @property
     def facts(self) -> tuple[str, ...]:
-        """The plan as facts without full stops, as kb/asp/belief.lp declares them.
-
-        () for a plan about nothing: where rules of users count, one is sought before it is known where any goal holds.
-        """
+        """The plan as facts without full stops, as kb/asp/belief.lp declares them."""
         if not self.goals and not self.errands and not self.unmet:
             return ()
         return (*self._goal_facts(), *self._step_facts(), *self._search_facts())

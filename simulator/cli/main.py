@@ -11,17 +11,7 @@ REPEAT_DELAY_SECONDS = 0.01  # until Python no longer drops exceptions; a conven
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `utak` and return its exit code.
-
-    Parameters
-    ----------
-    arguments : the command line without the program's name. None for that of the process: then Ctrl-C and the standard
-        streams are handled, too, because the process ends afterwards.
-
-    Returns
-    -------
-    The exit code.
-    """
+    """Run `utak` and return its exit code."""
     interrupts = _Interrupts()
     if arguments is None:
         exit_at_ctrl_c()
@@ -45,10 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class _Interrupts:
-    """Remembers that Ctrl-C was pressed, because an interrupted operation may fail with another exception.
-
-    An example is an import that fails.
-    """
+    """Remembers that Ctrl-C was pressed, because an interrupted operation may fail with another exception."""
 
     seen = False
 
@@ -67,20 +54,15 @@ class _Interrupts:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def _again(self, lost: "sys.UnraisableHookArgs") -> None:
-        """Interrupt once more after an interrupt where Python drops all exceptions, such as the end of an import.
-
-        Objects whose making was interrupted may fail when Python deletes them. That is no bug, so nothing is said.
-        """
+        """Interrupt once more after an interrupt where Python drops all exceptions, such as the end of an import."""
+        # That is no bug, so nothing is said.
         if issubclass(lost.exc_type, KeyboardInterrupt):
             repeat_soon()
         elif not self.seen:
             sys.__unraisablehook__(lost)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        """Note the interrupt and raise KeyboardInterrupt, or wait for the end of an import that is under way.
-
-        Libraries in C print a traceback of their own when an import of theirs is interrupted.
-        """
+        """Note the interrupt and raise KeyboardInterrupt, or wait for the end of an import that is under way."""
         self.seen = True
         if is_importing(frame):
             repeat_soon()

@@ -83,8 +83,6 @@ class VersionAction(argparse.Action):
 def points_joined(arguments: Sequence[str]) -> list[str]:
     """Return arguments of a command line with each point that begins with a minus joined to the option before it.
 
-    Else argparse takes such a point for an option.
-
     >>> points_joined(["a.yaml", "--start", "-1,2", "--scale", "2"])
     ['a.yaml', '--start=-1,2', '--scale', '2']
     """

@@ -27,44 +27,21 @@ EpisodeLine = dict[str, Any]  # the JSON object of one line
 
 @dataclass(frozen=True)
 class Episode:
-    """An episode that was read.
+    """An episode that was read."""
 
-    Attributes
-    ----------
-    header : the options, the world and the task.
-    steps : step 0, and one line for each command, in order.
-    result : the end; None when the run was cut short.
-    """
-
-    header: EpisodeLine
-    steps: tuple[EpisodeLine, ...]
-    result: EpisodeLine | None
+    header: EpisodeLine  # the options, the world and the task
+    steps: tuple[EpisodeLine, ...]  # step 0, and one line for each command, in order
+    result: EpisodeLine | None  # the end; None when the run was cut short
 
 
 def encode(line: EpisodeLine) -> str:
-    """Return one line of an episode as text, with its line end.
-
-    Floats are written in full. Equal values give equal text. Raises ValueError for NaN and infinite numbers.
-    """
+    """Return one line of an episode as text, with its line end."""
+    # Raises ValueError for NaN and infinite numbers.
     return json.dumps(line, separators=(",", ":"), allow_nan=False) + "\n"
 
 
 def read_episode(path: Path | str) -> Episode:
-    """Return an episode, complete or cut short.
-
-    Parameters
-    ----------
-    path : the file.
-
-    Returns
-    -------
-    The episode, with every value checked.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the file is no episode, or it is damaged.
-    """
+    """Return an episode, complete or cut short."""
     name = str(path)
     *lines, rest = _split(path)
     if _is_object(rest):  # an editor took the last line end away
@@ -94,21 +71,7 @@ def read_episode(path: Path | str) -> Episode:
 
 
 def read_begun_episode(path: Path | str) -> Episode:
-    """Return an episode of at least one step, complete or cut short.
-
-    Parameters
-    ----------
-    path : the file.
-
-    Returns
-    -------
-    The episode, with every value checked.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the file is no episode, it is damaged, or it ends before its first step.
-    """
+    """Return an episode of at least one step, complete or cut short."""
     episode = read_episode(path)
     if not episode.steps:
         raise _damaged(str(path), 1, "the episode ends before its first step")
@@ -116,10 +79,8 @@ def read_begun_episode(path: Path | str) -> Episode:
 
 
 def complete_lines(path: Path | str) -> list[bytes]:
-    """Return the lines of an episode with their line ends; a last line without a line end is left out.
-
-    Raises CannotOpenError when the file cannot be read, BadInputError when it is too large.
-    """
+    """Return the lines of an episode with their line ends; a last line without a line end is left out."""
+    # Raises CannotOpenError when the file cannot be read, BadInputError when it is too large.
     return _split(path)[:-1]
 
 
@@ -224,21 +185,7 @@ def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> P
 
 
 class EpisodeLog:
-    """Writes an episode to a file, line by line; no other process can write to the file meanwhile.
-
-    Parameters
-    ----------
-    path : the file; `-` for the standard output, None to write nowhere.
-    resume : continue the episode in the file. The run is repeated from the start, and every line in the file must come
-        out again byte for byte; a last line that was cut short is dropped, and so is the result of a run that a limit
-        of time ended.
-    force : overwrite a file that is no episode.
-    listen : called with each line once it is written.
-
-    Raises
-    ------
-    CannotOpenError : there is nothing to resume, or `simulator.episode.output_files` refuses the file.
-    """
+    """Writes an episode to a file, line by line; no other process can write to the file meanwhile."""
 
     def __init__(
         self,
@@ -277,10 +224,8 @@ class EpisodeLog:
         return self._number < len(self._recorded)
 
     def write(self, line: EpisodeLine) -> None:
-        """Write one line at once; while resuming, compare it with the recorded line.
-
-        Raises BadInputError when it differs, CannotOpenError when it cannot be written.
-        """
+        """Write one line at once; while resuming, compare it with the recorded line."""
+        # Raises BadInputError when it differs, CannotOpenError when it cannot be written.
         text = encode(line)
         self._number += 1
         if self._number <= len(self._recorded):

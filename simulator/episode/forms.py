@@ -33,16 +33,11 @@ class Whole:
 
 @dataclass(frozen=True)
 class Characters:
-    """A string.
+    """A string."""
 
-    Attributes
-    ----------
-    form : a regular expression that must match all of it, in the subset that Python and ECMA-262 share; None for any.
-    name : what messages call it.
-    """
-
+    # A regular expression that must match all of it, in the subset that Python and ECMA-262 share; None for any
     form: str | None = None
-    name: str = "a text"
+    name: str = "a text"  # what messages call it
 
 
 @dataclass(frozen=True)
@@ -84,30 +79,18 @@ class NamesTo:
 
 @dataclass(frozen=True)
 class Keys:
-    """An object with these keys, each of its own form; further keys are accepted.
+    """An object with these keys, each of its own form; further keys are accepted."""
 
-    Attributes
-    ----------
-    forms : the form of each key.
-    optional : keys that may be missing.
-    """
-
-    forms: Mapping[str, "Form"]
-    optional: frozenset[str] = frozenset()
+    forms: Mapping[str, "Form"]  # the form of each key
+    optional: frozenset[str] = frozenset()  # keys that may be missing
 
 
 @dataclass(frozen=True)
 class ByKind:
-    """An object with a key that says what further keys it has.
+    """An object with a key that says what further keys it has."""
 
-    Attributes
-    ----------
-    key : that key.
-    kinds : its values, each with the further keys.
-    """
-
-    key: str
-    kinds: Mapping[str, Keys]
+    key: str  # that key
+    kinds: Mapping[str, Keys]  # its values, each with the further keys
 
 
 @dataclass(frozen=True)
@@ -129,18 +112,11 @@ class AnyOf:
 
 @dataclass(frozen=True)
 class NestedKeys:
-    """An object that may hold others like itself.
+    """An object that may hold others like itself."""
 
-    Attributes
-    ----------
-    name : the name under which the form stands in a schema document.
-    node : the keys of each object.
-    below : the key of the list of those that it holds; it may be missing.
-    """
-
-    name: str
-    node: Keys
-    below: str
+    name: str  # the name under which the form stands in a schema document
+    node: Keys  # the keys of each object
+    below: str  # the key of the list of those that it holds; it may be missing
 
 
 @dataclass(frozen=True)
@@ -176,18 +152,7 @@ Form = (
 
 
 def complaints(form: Form, value: Any, at: KeyPath = ()) -> Iterator[LineComplaint]:
-    """Yield what is wrong with a value.
-
-    Parameters
-    ----------
-    form : the form that it should have.
-    value : the value, as Python's JSON reader returns it.
-    at : the keys that lead to it.
-
-    Yields
-    ------
-    The keys that lead to a wrong value inside it, and what is wrong.
-    """
+    """Yield what is wrong with a value."""
     yield from _CHECKERS[type(form)](form, value, at)
 
 

@@ -31,17 +31,6 @@ Schema = dict[str, Any]
 def schema_of(form: Form) -> Schema:
     """Return a form as JSON Schema.
 
-    A schema accepts just the values that `simulator.episode.forms.complaints` finds nothing wrong with, but for one:
-    JSON Schema knows no difference between 1 and 1.0, and a `Whole` is written without a fraction.
-
-    Parameters
-    ----------
-    form : the form.
-
-    Returns
-    -------
-    The schema as a value for JSON.
-
     Examples
     --------
     >>> schema_of(OrNull(Whole(0, 7)))
@@ -51,18 +40,7 @@ def schema_of(form: Form) -> Schema:
 
 
 def document(forms: Mapping[str, Form], title: str, any_of: tuple[str, ...]) -> Schema:
-    """Return a whole schema with a definition for each form.
-
-    Parameters
-    ----------
-    forms : forms by name.
-    title : what the schema describes.
-    any_of : the names of the forms of which a value must have one.
-
-    Returns
-    -------
-    The schema as a value for JSON.
-    """
+    """Return a whole schema with a definition for each form."""
     wanted: Schema = {"anyOf": [{"$ref": f"#/$defs/{name}"} for name in any_of]}
     if len(any_of) == 1:
         wanted = {"$ref": f"#/$defs/{any_of[0]}"}

@@ -41,10 +41,7 @@ def is_gif(head: bytes) -> bool:
 
 
 def after_prologue(head: bytes, *more: bytes) -> bytes:
-    """Return XML or HTML without the blanks, comments and declarations before its first tag.
-
-    head : the first bytes of a file. more : beginnings of other tags that are left out, too. Takes linear time.
-    """
+    """Return XML or HTML without the blanks, comments and declarations before its first tag."""
     ends = {b"<!--": b"-->", b"<?xml": b">", **dict.fromkeys(more, b">")}
     at = 0
     while (found := re.compile(rb"\s*(<!--|<\?xml|<!DOCTYPE)").match(head, at)) and found[1] in ends:
@@ -56,25 +53,7 @@ def after_prologue(head: bytes, *more: bytes) -> bytes:
 
 
 def open_for_writing(path: Path | str, kind: Kind, name: str, force: bool = False) -> BinaryIO:
-    """Return a file for writing, positioned at its start, with its contents kept; a new file is made if needed.
-
-    The file is locked until it is closed. A pipe or a device is returned as it is.
-
-    Parameters
-    ----------
-    path : the file.
-    kind : returns whether a file with given first bytes may be overwritten. An empty file always may.
-    name : the name of this kind of file, for the message.
-    force : whether to overwrite a file of any kind.
-
-    Returns
-    -------
-    The binary stream.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be written, is of another kind, or another process writes to it.
-    """
+    """Return a file for writing, positioned at its start, with its contents kept; a new file is made if needed."""
     try:
         if Path(path).exists() and not Path(path).is_file():
             return Path(path).open("wb")
@@ -89,10 +68,7 @@ def open_for_writing(path: Path | str, kind: Kind, name: str, force: bool = Fals
 
 
 def check_path(path: Path | str, kind: Kind, name: str, force: bool = False) -> None:
-    """Raise CannotOpenError unless a file can be written, as far as can be told; nothing is made or changed.
-
-    path, kind, name, force : as for `open_for_writing`.
-    """
+    """Raise CannotOpenError unless a file can be written, as far as can be told; nothing is made or changed."""
     if os.path.lexists(path):
         open_for_writing(path, kind, name, force).close()
         return
@@ -123,18 +99,7 @@ def keep_first(stream: BinaryIO, size: int) -> None:
 
 
 def write_whole(path: Path | str, contents: bytes, kind: Kind, name: str, force: bool = False) -> None:
-    """Write a file, whole or not at all.
-
-    Parameters
-    ----------
-    path : the file. A link is followed; a pipe or a device is written to.
-    contents : the whole new contents.
-    kind, name, force : which files may be overwritten, as for `open_for_writing`.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be written, is of another kind, or another process writes to it.
-    """
+    """Write a file, whole or not at all."""
     stream = None
     try:
         if os.path.lexists(path):
@@ -174,14 +139,7 @@ def replace_whole(path: Path | str, contents: bytes) -> None:
 
 
 class GrowingFile:
-    """A file that grows line by line, locked for this process until it is closed.
-
-    Its old contents stay until the first line is written; a new file without any line is removed again.
-
-    Parameters
-    ----------
-    path, kind, name, force : as for `open_for_writing`, which says what is raised.
-    """
+    """A file that grows line by line, locked for this process until it is closed."""
 
     def __init__(self, path: Path | str, kind: Kind, name: str, force: bool = False) -> None:
         self._path, self._is_new, self._kept = str(path), not os.path.lexists(path), 0

@@ -29,19 +29,7 @@ RULES_HEAD = "% The user's rules that take part in this encoding (--kb)."
 
 
 class ProgramDump:
-    """Writes the decisions of the lines of one episode into a folder, in the order of the lines.
-
-    Parameters
-    ----------
-    folder : the folder; it is made.
-    name : the name of the episode in messages.
-    kb_files : files of rules, among which those of the run are found by their sums.
-    force : whether to write into a folder that is not empty, too.
-
-    Raises
-    ------
-    CannotOpenError : the folder is not empty, or cannot be written.
-    """
+    """Writes the decisions of the lines of one episode into a folder, in the order of the lines."""
 
     def __init__(self, folder: Path | str, name: str, kb_files: Sequence[str] = (), force: bool = False) -> None:
         self._folder, self._name = Path(folder), name
@@ -60,17 +48,7 @@ class ProgramDump:
             raise CannotOpenError(str(self._folder), getattr(error, "strerror", None) or str(error)) from None
 
     def add(self, line: EpisodeLine) -> None:
-        """Write the decisions of a line.
-
-        Parameters
-        ----------
-        line : the next line of the episode: its header, a step, or the result, which holds none.
-
-        Raises
-        ------
-        CannotOpenError : a file cannot be written.
-        BadInputError : the line is damaged, or rules of the run are not among `kb_files`.
-        """
+        """Write the decisions of a line."""
         if "step" not in line:
             if not self._head:
                 self._head = line
@@ -152,9 +130,6 @@ def rules_at(head: Mapping[str, Any], step: int) -> list[str]:
 def without_anonymous_negation(text: str) -> str:
     r"""Return a program in which `not p(X, _)` is `not some_p_1(X)`, with `some_p_1(X) :- p(X, _).` at its end.
 
-    Both say that p holds for X with nothing. viasp (2.3) cannot draw the first form. Comments and texts in quotes are
-    left alone, and so are negated atoms whose arguments have arguments.
-
     >>> without_anonymous_negation("q(X) :- r(X), not p(X, _).")
     'q(X) :- r(X), not some_p_1(X).\nsome_p_1(A1) :- p(A1, _).'
     """
@@ -182,22 +157,7 @@ def _atom(name: str, arguments: Sequence[str]) -> str:
 def dump_episode(
     folder: Path | str, name: str, episode: Episode, last: int | None, kb_files: Sequence[str], force: bool = False
 ) -> None:
-    """Write the decisions of a recorded episode into a folder.
-
-    Parameters
-    ----------
-    folder : the folder; it is made.
-    name : the name of the episode in messages.
-    episode : the episode.
-    last : the last step whose decisions are written; None for all.
-    kb_files : files of rules, among which those of the run are found by their sums.
-    force : whether to write into a folder that is not empty, too.
-
-    Raises
-    ------
-    CannotOpenError : the folder is not empty, or a file cannot be read or written.
-    BadInputError : the episode is damaged, or rules of its run are not among `kb_files`.
-    """
+    """Write the decisions of a recorded episode into a folder."""
     with whole_folder(Path(folder), force) as part:
         dump = ProgramDump(part, name, kb_files)
         for line in (episode.header, *episode.steps):

@@ -79,21 +79,7 @@ def rules_sum(path: str) -> str:
 
 
 def recorded_task(name: str, entry: EpisodeLine) -> Task:
-    """Return the task in an episode's header.
-
-    Parameters
-    ----------
-    name : the name of the episode, for messages.
-    entry : the task as `header` states it.
-
-    Returns
-    -------
-    The task.
-
-    Raises
-    ------
-    BadInputError : the entry states no task; the place in it is line 1 of the episode.
-    """
+    """Return the task in an episode's header."""
     try:
         claims = [f"confidence({fact}, {int(confidence)})." for fact, confidence in entry["claims"]]
         parameters = [f"{kind}({parameter})." for parameter, kind in entry["parameters"].items()]
@@ -133,10 +119,8 @@ def _rings(polygon: Any) -> list[list[list[float]]]:
 
 
 def recorded_world(head: EpisodeLine) -> World:
-    """Return the world in an episode's header, as far as a picture needs it; Utak is put at (0, 0).
-
-    Raises KeyError, TypeError or ValueError when the header is not as `header` makes it.
-    """
+    """Return the world in an episode's header, as far as a picture needs it; Utak is put at (0, 0)."""
+    # Raises KeyError, TypeError or ValueError when the header is not as `header` makes it.
     entry = head["world"]
     width, height = entry["table"]
     verge = shapely.MultiPolygon([shapely.Polygon(rings[0], rings[1:]) for rings in entry["verge"]])
@@ -145,15 +129,7 @@ def recorded_world(head: EpisodeLine) -> World:
 
 
 def facts_of_line(line: EpisodeLine, parameters: Mapping[str, Any] | None = None) -> list[str]:
-    """Return the world model in an episode's line as facts; [] when it has none.
-
-    Older episodes state what the parameters mean beside their facts; it is added as facts.
-
-    Parameters
-    ----------
-    line : the line of a step.
-    parameters : the kinds of the task's parameters by name (text, or values with the attribute `kind`); None for none.
-    """
+    """Return the world model in an episode's line as facts; [] when it has none."""
     believed: Any = line.get("belief")
     facts: Any = believed.get("facts") if isinstance(believed, dict) else None
     if not isinstance(facts, list):
@@ -168,22 +144,7 @@ def facts_of_line(line: EpisodeLine, parameters: Mapping[str, Any] | None = None
 
 
 def recorded_scenario(head: EpisodeLine, waking: EpisodeLine) -> Scenario:
-    """Return the scenario of an episode, so that its run can be repeated.
-
-    Parameters
-    ----------
-    head : the header of the episode.
-    waking : the line of its step 0, which says where Utak woke.
-
-    Returns
-    -------
-    The world, the task and the expectations.
-
-    Raises
-    ------
-    BadInputError : the task in the header has errors.
-    KeyError, TypeError or ValueError : the header is not as `header` makes it.
-    """
+    """Return the scenario of an episode, so that its run can be repeated."""
     world, entry = recorded_world(head), head["task"]
     x, y = waking["utak"]
     verge = world.verge.geoms[0] if len(world.verge.geoms) == 1 else world.verge
@@ -208,21 +169,7 @@ def _as_text(facts: Iterable[str]) -> str:
 
 
 def recorded_settings(head: EpisodeLine, kb_files: tuple[str, ...]) -> Settings:
-    """Return the options of an episode.
-
-    Parameters
-    ----------
-    head : the header of the episode.
-    kb_files : the paths of the users' rules with which it was made; a header holds only their sums.
-
-    Returns
-    -------
-    The settings of the run.
-
-    Raises
-    ------
-    ValueError : the rule files are others than those of the episode; the message says so.
-    """
+    """Return the options of an episode."""
     options = dict(head["options"])
     sums = options.pop("kb")
     if sums != rule_sums(kb_files):

@@ -9,17 +9,7 @@ SHOWN_SUM_DIGITS = 8  # hexadecimal digits by which a message names a file of ru
 
 
 def missing_rules(header: EpisodeLine, rule_files: Sequence[str]) -> str:
-    """Return in a line that rules of a run are not given; "" when all are.
-
-    Parameters
-    ----------
-    header : the first line of the episode. It names the rules of each stage of the run by their SHA-256 sums.
-    rule_files : the paths of the files that are given. One that was changed since the run is another file.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    """
+    """Return in a line that rules of a run are not given; "" when all are."""
     sums = dict.fromkeys(_sums(header))
     if not sums:
         return ""

@@ -49,19 +49,7 @@ MORE_LIKELY = 50  # percent: a fact with less confidence is more likely wrong th
 
 
 class Questions:
-    """Answers questions about a run.
-
-    Parameters
-    ----------
-    header : the first line of the episode, which states the task.
-    lines : the lines of the steps so far, from step 0 on.
-    result : the end of the run; None while it goes on.
-    rule_files : the paths of the files with users' rules that took part.
-
-    Attributes
-    ----------
-    beliefs : explains the facts of the run.
-    """
+    """Answers questions about a run."""
 
     def __init__(
         self,
@@ -82,26 +70,12 @@ class Questions:
 
     @property
     def lacking(self) -> str:
-        """Rules of the run that are not given, so that answers lack them, in a line; "" for none.
-
-        Raises CannotOpenError when a file of rules cannot be read.
-        """
+        """Rules of the run that are not given, so that answers lack them, in a line; "" for none."""
+        # Raises CannotOpenError when a file of rules cannot be read.
         return missing_rules(self._header, self._rule_files)
 
     def why(self, fact: str, step: int | None = None) -> Reason:
-        """Return the reason why a fact is believed, or why a goal or a verdict stands as it does.
-
-        Parameters
-        ----------
-        fact : a fact of the world model such as `shape(o1, square, 95)`, one of the goals, or `verdict(done)`. Names
-            with a capital letter and `_` stand for anything: of the facts that fit, the surest is explained, and the
-            reason says how many there are.
-        step : the number of the step; None for the last one.
-
-        Raises
-        ------
-        BadInputError : the text is no fact, the fact is not believed then, or there is no such step.
-        """
+        """Return the reason why a fact is believed, or why a goal or a verdict stands as it does."""
         at = self._checked(step)
         wanted = _one_fact(fact)
         name, _ = atom_parts(wanted)
@@ -118,18 +92,7 @@ class Questions:
             return _one_of(self.beliefs.explain(found, at), 1 + len(others))
 
     def why_not(self, fact: str, step: int | None = None) -> Reason:
-        """Return why a fact is not believed: the smallest set of facts that is missing or in the way.
-
-        Parameters
-        ----------
-        fact : a fact of the world model, or `verdict(done)`. A confidence may be a name with a capital letter: then the
-            question is why the fact is not believed with a confidence of at least MORE_LIKELY percent.
-        step : the number of the step; None for the last one.
-
-        Raises
-        ------
-        BadInputError : the text is no fact, the fact is believed, or there is no such step.
-        """
+        """Return why a fact is not believed: the smallest set of facts that is missing or in the way."""
         at = self._checked(step)
         wanted = _one_fact(fact)
         with _refusing_damage(fact):
@@ -237,12 +200,7 @@ class Questions:
 
 
 def rule_paths(files: Iterable[Path | str]) -> list[str]:
-    """Return the absolute paths of files with users' rules, as text.
-
-    Parameters
-    ----------
-    files : paths, perhaps relative to the working directory.
-    """
+    """Return the absolute paths of files with users' rules, as text."""
     return [str(Path(file).absolute()) for file in files]
 
 
@@ -253,13 +211,7 @@ def questions_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> Qu
 
 @contextmanager
 def _refusing_damage(question: str) -> Iterator[None]:
-    """Turn what an episode cannot tell into BadInputError, in a `with` block.
-
-    An episode of somebody else's may have values that are each well formed and do not fit together: a decision that is
-    none, a region that is not there, more places than impressions. Explaining then ends in an exception of Python.
-
-    question : what was asked, for the message.
-    """
+    """Turn what an episode cannot tell into BadInputError, in a `with` block."""
     try:
         yield
     except (MissingRecordError, ExplanationError) as error:
@@ -314,10 +266,7 @@ def _is_weak(wanted: str, believed: str) -> bool:
 
 
 def _one_fact(text: str) -> str:
-    """Return a fact without full stop and blanks; raise BadInputError when the text is no fact.
-
-    Variables are no terms of facts: the text is checked with names of the same length in their place.
-    """
+    """Return a fact without full stop and blanks; raise BadInputError when the text is no fact."""
     written = text.strip().removesuffix(".").strip()
     checked = QUESTION_VARIABLE.sub(lambda match: "v" * len(match[0]), written)
     try:

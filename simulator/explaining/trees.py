@@ -16,18 +16,7 @@ TreeEntry = dict[str, Any]  # {"text": str, "children": [...]}, or without child
 
 
 def trees_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> dict[int, list[TreeEntry]]:
-    """Return trees of reasons by step: why its command was given, and at the last step why the verdict is so.
-
-    Parameters
-    ----------
-    episode : the episode; what it does not record is not explained.
-    rule_files : the paths of the files with users' rules that took part.
-
-    Returns
-    -------
-    By step, trees of at most TREE_LEVELS levels. Of a long episode MAX_EXPLAINED_STEPS steps at equal distances are
-    explained.
-    """
+    """Return trees of reasons by step: why its command was given, and at the last step why the verdict is so."""
     questions, last = questions_of_episode(episode, rule_files), len(episode.steps) - 1
     stride = max(1, -(-last // MAX_EXPLAINED_STEPS))
     trees: dict[int, list[TreeEntry]] = {}

@@ -16,66 +16,42 @@ COLOUR_LETTERS = "acdefghijklmnopqrstuvwxyz"  # the colours of objects: all lett
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """Options of reading a file of another format.
+    """Options of reading a file of another format."""
 
-    Attributes
-    ----------
-    scale : squares for one cell of the source; below 1 only where docs/importing.md allows it. None for the default
-        of the format.
-    level : the number of the level in a file of several, from 1.
-    start : where the robot wakes (x, y), in the units of the source; None for the default of the format.
-    from_top : whether y of `start` counts from the north edge to the south.
-    unknown_is_floor : whether cells of which the source says nothing are floor; else they are verge.
-    untrusted : whether files beside the source must lie in its folder.
-    """
-
+    # Squares for one cell of the source; below 1 only where docs/importing.md allows it. None for the default of the
+    # format.
     scale: Fraction | None = None
-    level: int = 1
+    level: int = 1  # the number of the level in a file of several, from 1
+    # Where the robot wakes (x, y), in the units of the source; None for the default of the format
     start: tuple[float, float] | None = None
-    from_top: bool = False
-    unknown_is_floor: bool = False
-    untrusted: bool = False
+    from_top: bool = False  # whether y of `start` counts from the north edge to the south
+    unknown_is_floor: bool = False  # whether cells of which the source says nothing are floor; else they are verge
+    untrusted: bool = False  # whether files beside the source must lie in its folder
 
 
 @dataclass(frozen=True)
 class Imported:
-    """A scenario as it was read of a file of another format.
+    """A scenario as it was read of a file of another format."""
 
-    Attributes
-    ----------
-    title : what it is, in one line.
-    world_file : the name of its world's file, world.txt or world.lp.
-    world_text : the text of that file.
-    start, goal, expect : the facts of start.lp, goal.lp and expect.lp, each with its full stop; no `expect` for a task
-        whose end cannot be judged.
-    notes : what the scenario does not say as the source does, a sentence each.
-    """
-
-    title: str
-    world_file: str
-    world_text: str
+    title: str  # what it is, in one line
+    world_file: str  # the name of its world's file, world.txt or world.lp.
+    world_text: str  # the text of that file
+    # The facts of start.lp, goal.lp and expect.lp, each with its full stop; no `expect` for a task whose end cannot be
+    # judged.
     start: tuple[str, ...]
     goal: tuple[str, ...]
     expect: tuple[str, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what the scenario does not say as the source does, a sentence each
 
 
 class ObjectGoal(NamedTuple):
-    """An object that shall be brought elsewhere.
+    """An object that shall be brought elsewhere."""
 
-    Attributes
-    ----------
-    name : its name in the world.
-    colour : its colour.
-    outline : shapely Polygon, where it lies at first; squares, table frame.
-    shift : how far it shall be brought (x, y), in squares of the table.
-    unique : whether it alone has its colour. Else nothing tells it from the others, and expect.lp leaves it out.
-    """
-
-    name: str
-    colour: str
-    outline: Any
-    shift: tuple[float, float]
+    name: str  # its name in the world
+    colour: str  # its colour
+    outline: Any  # shapely Polygon, where it lies at first; squares, table frame
+    shift: tuple[float, float]  # how far it shall be brought (x, y), in squares of the table
+    # Whether it alone has its colour. Else nothing tells it from the others, and expect.lp leaves it out.
     unique: bool = True
 
 
@@ -88,17 +64,7 @@ class TaskFacts(NamedTuple):
 
 
 def task_of_objects(goals: Iterable[tuple[str, ObjectGoal]], utak: tuple[float, float]) -> TaskFacts:
-    """Return the facts of a task that brings objects to places, unturned.
-
-    Parameters
-    ----------
-    goals : the name of the parameter, and the object with its goal.
-    utak : where the robot wakes (x, y), squares, table frame; it faces north.
-
-    Returns
-    -------
-    The facts of start.lp, goal.lp and expect.lp.
-    """
+    """Return the facts of a task that brings objects to places, unturned."""
     start, goal, expect = [], [], []
     for parameter, one in goals:
         east, north = (

@@ -17,22 +17,7 @@ MAX_MAP_FILE_BYTES = 20_000_000  # bytes; derived: the largest table of cells of
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
-    """Return the scenario of a Moving AI map.
-
-    Parameters
-    ----------
-    path : the file.
-    options : `scale`, `start` (in cells of the map) and `from_top` count.
-
-    Returns
-    -------
-    The scenario; its goal is the north-east corner.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : it is no map, or the robot cannot wake there.
-    """
+    """Return the scenario of a Moving AI map."""
     raw = read_raw(path, MAX_MAP_FILE_BYTES, "a Moving AI map", options.untrusted)
     source = text_source(path, raw)
     try:
@@ -54,26 +39,7 @@ def scenario_of_walls(
     notes: tuple[str, ...] = (),
     offset: tuple[float, float] = (0.0, 0.0),
 ) -> Imported:
-    """Return the scenario of walls and floor.
-
-    Parameters
-    ----------
-    source : the file, for messages.
-    title : what it is, in one line.
-    walls : (rows, columns) bool, row 0 in the south.
-    scale : squares for one cell; below 1, one square for several cells.
-    start : where the robot wakes (x, y), in cells from the south-west corner of the source; None for any roomy place.
-    notes : what the scenario does not say as the source does.
-    offset : the cells (x, y) of the source that `walls` leaves out in the west and in the south.
-
-    Returns
-    -------
-    The scenario; its goal is the north-east corner.
-
-    Raises
-    ------
-    BadInputError : there is no floor, the robot cannot wake there, or the table would be too large.
-    """
+    """Return the scenario of walls and floor."""
     try:
         squares = scaled_walls(walls, scale)
         place = roomy_place(squares) if start is None else _square(source, squares, scale, start, offset)

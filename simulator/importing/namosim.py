@@ -47,45 +47,18 @@ MARKER_NAME = "goal"
 
 @dataclass(frozen=True)
 class _Shape:
-    """An element with an outline.
+    """An element with an outline."""
 
-    Attributes
-    ----------
-    element : the element.
-    type : its attribute `type`, or ''.
-    ids : its own id and those of the groups around it.
-    rings : its rings, squares, table frame.
-    even_odd : whether holes are told by the even-odd rule.
-    """
-
-    element: XmlElement
-    type: str
-    ids: frozenset[str]
-    rings: tuple[SvgRing, ...]
-    even_odd: bool
+    element: XmlElement  # the element
+    type: str  # its attribute `type`, or ''
+    ids: frozenset[str]  # its own id and those of the groups around it
+    rings: tuple[SvgRing, ...]  # its rings, squares, table frame
+    even_odd: bool  # whether holes are told by the even-odd rule
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
-    """Return the scenario of a NAMOSIM file.
-
-    The first robot of the file becomes Utak, a point in its middle. A fixed square of one square marks the middle of
-    its first goal: the task is to come to it. Where the marker would lie on something, the task is the corner of the
-    floor that lies in the same direction.
-
-    Parameters
-    ----------
-    path : the file.
-    options : `scale` counts: squares for one cell of the file.
-
-    Returns
-    -------
-    The scenario.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : it is no such file, or TABLETOP cannot show it.
-    """
+    """Return the scenario of a NAMOSIM file."""
+    # Where the marker would lie on something, the task is the corner of the floor that lies in the same direction.
     source = text_source(path, read_raw(path, MAX_FILE_BYTES, "a NAMOSIM scenario", options.untrusted))
     root = parse_xml(source)
     try:
@@ -96,14 +69,7 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
 
 
 class _Reader:
-    """Reads one file.
-
-    Parameters
-    ----------
-    source : the file.
-    root : its root element.
-    scale : squares for one cell of the file.
-    """
+    """Reads one file."""
 
     def __init__(self, source: Source, root: XmlElement, scale: Fraction) -> None:
         self._source, self._root = source, root
@@ -242,10 +208,7 @@ class _Reader:
         return placed
 
     def _polygon(self, shape: _Shape) -> Any:
-        """Return the outline of an element; raise BadInputError when it is none.
-
-        A ring within the others is a hole by the even-odd rule, or when it turns the other way; else it is added.
-        """
+        """Return the outline of an element; raise BadInputError when it is none."""
         whole: Any = None
         first = 0.0
         for ring in shape.rings:
@@ -291,10 +254,8 @@ class _Reader:
         return float(text)
 
     def _wrong(self, element: XmlElement, key: str, what: str, at: int | None = None) -> BadInputError:
-        """Return the error `what` at an attribute of an element.
-
-        at : the index of the character of its value; None for all of it.
-        """
+        """Return the error `what` at an attribute of an element."""
+        # None for all of it.
         span: SourceSpan = (
             attribute_span(self._source, element, key)
             if at is None

@@ -26,33 +26,14 @@ MAX_PGM_DIGITS = 9  # digits of a number; more are refused before they are calcu
 
 
 class GreyImage(NamedTuple):
-    """A grey image.
+    """A grey image."""
 
-    Attributes
-    ----------
-    values : (rows, columns) int32, row 0 in the SOUTH.
-    greatest : the greatest value that a pixel may have.
-    """
-
-    values: npt.NDArray[np.int32]
-    greatest: int
+    values: npt.NDArray[np.int32]  # (rows, columns) int32, row 0 in the SOUTH
+    greatest: int  # the greatest value that a pixel may have
 
 
 def parse_pgm(source: Source) -> GreyImage:
-    """Return the image that the bytes of a file describe.
-
-    Parameters
-    ----------
-    source : the file, one letter a byte.
-
-    Returns
-    -------
-    The image.
-
-    Raises
-    ------
-    BadInputError : it is no such image, or too large.
-    """
+    """Return the image that the bytes of a file describe."""
     kind = source.text[:2]
     if kind not in ("P2", "P5"):
         hint = "ROS maps are .pgm files of kind P2 or P5: save the image as one"

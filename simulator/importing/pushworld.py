@@ -42,22 +42,7 @@ PuzzlePlaces = dict[str, dict[RasterCell, SourceSpan]]
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
-    """Return the scenario of a PushWorld puzzle.
-
-    Parameters
-    ----------
-    path : the file.
-    options : `scale` counts.
-
-    Returns
-    -------
-    The scenario: each object with a goal must come to the pose of the goal.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : it is no puzzle, or one that TABLETOP cannot show; carries all that is wrong.
-    """
+    """Return the scenario of a PushWorld puzzle."""
     source = text_source(path, read_raw(path, MAX_FILE_BYTES, "a PushWorld puzzle", options.untrusted))
     places, rows, columns = _places(source)
     problems = list(_problems(source, places))

@@ -30,39 +30,23 @@ class RasterError(ValueError):
 
 @dataclass(frozen=True)
 class CellWorld:
-    """A world of cells.
+    """A world of cells."""
 
-    Attributes
-    ----------
-    walls : (rows, columns) bool, row 0 in the south.
-    objects : the cells of each movable object.
-    robot : the cell in which the robot wakes, in its middle.
-    """
-
-    walls: Bools
-    objects: tuple[frozenset[RasterCell], ...]
-    robot: RasterCell
+    walls: Bools  # (rows, columns) bool, row 0 in the south
+    objects: tuple[frozenset[RasterCell], ...]  # the cells of each movable object
+    robot: RasterCell  # the cell in which the robot wakes, in its middle
 
 
 @dataclass(frozen=True)
 class WorldText:
-    """The world file of a scenario.
+    """The world file of a scenario."""
 
-    Attributes
-    ----------
-    file : its name, world.txt or world.lp.
-    text : its text.
-    names, colours : the name and the colour of each object, in the order of the objects.
-    outlines : their outlines, shapely Polygons, squares, table frame.
-    utak : where the robot wakes (x, y), squares, table frame.
-    """
-
-    file: str
-    text: str
-    names: tuple[str, ...]
+    file: str  # its name, world.txt or world.lp.
+    text: str  # its text
+    names: tuple[str, ...]  # the name and the colour of each object, in the order of the objects
     colours: tuple[str, ...]
-    outlines: tuple[Any, ...]
-    utak: tuple[float, float]
+    outlines: tuple[Any, ...]  # their outlines, shapely Polygons, squares, table frame
+    utak: tuple[float, float]  # where the robot wakes (x, y), squares, table frame
 
     def unique(self, index: int) -> bool:
         """Return whether an object alone has its colour. index : its index in `names`."""
@@ -70,25 +54,7 @@ class WorldText:
 
 
 def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
-    """Return the world file that states a world of cells.
-
-    Objects that share an edge have different colours, and as far as the letters reach all have.
-
-    Parameters
-    ----------
-    world : the world.
-    scale : the squares along each side of a cell, at least 1.
-    border : the squares of verge that are added on each side.
-
-    Returns
-    -------
-    A picture (world.txt) when the table has at most `MAX_PICTURE_SIDE` squares a side, else facts (world.lp).
-
-    Raises
-    ------
-    RasterError : the table would be larger than `MAX_TABLE_SIDE`, or is too large for a picture and has walls of more
-        than `MAX_OUTLINE_CORNERS` corners.
-    """
+    """Return the world file that states a world of cells."""
     if not world.walls.any() and max(world.walls.shape) * scale > MAX_PICTURE_SIDE:
         border = max(border, 1)  # facts state a verge, however small
     check_size(world.walls.shape, Fraction(scale), border)
@@ -115,36 +81,14 @@ def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
 
 
 def check_size(shape: tuple[int, ...], scale: Fraction, border: int = 0) -> None:
-    """Raise RasterError when the table for cells would be too large.
-
-    Parameters
-    ----------
-    shape : rows and columns of the cells.
-    scale : the squares along each side of a cell.
-    border : the squares of verge that are added on each side.
-    """
+    """Raise RasterError when the table for cells would be too large."""
     side = max(shape) * scale + 2 * border
     if side > MAX_TABLE_SIDE:
         raise RasterError(f"the table would have {float(side):g} squares a side, more than {MAX_TABLE_SIDE}")
 
 
 def scaled_walls(walls: Bools, scale: Fraction) -> Bools:
-    """Return walls with larger or smaller cells, row 0 in the south.
-
-    Parameters
-    ----------
-    walls : (rows, columns) bool, row 0 in the south.
-    scale : N for N x N squares a cell, or 1/N for one square for N x N cells, which is wall when one of them is, or
-        when one would lie beyond the edge.
-
-    Returns
-    -------
-    (rows, columns) bool.
-
-    Raises
-    ------
-    RasterError : the table would be larger than `MAX_TABLE_SIDE`, or the scale is beyond `MAX_CELL_SCALE`.
-    """
+    """Return walls with larger or smaller cells, row 0 in the south."""
     if not Fraction(1, MAX_CELL_SCALE) <= scale <= MAX_CELL_SCALE:
         raise RasterError(f"{scale} squares a cell: from 1/{MAX_CELL_SCALE} to {MAX_CELL_SCALE} are possible")
     check_size(walls.shape, scale)
@@ -161,11 +105,7 @@ def scaled_walls(walls: Bools, scale: Fraction) -> Bools:
 
 
 def roomy_place(walls: Bools) -> RasterCell | None:
-    """Return the cell in which a robot wakes that may wake anywhere; None when all is wall.
-
-    It lies in the largest part of the floor, there in the south-west, and where its eight neighbours are floor if there
-    is such a cell.
-    """
+    """Return the cell in which a robot wakes that may wake anywhere; None when all is wall."""
     parts = components(~walls)
     if not parts.number:
         return None
@@ -207,10 +147,7 @@ def _outline(cells: frozenset[RasterCell], scale: int, border: int) -> Any:
 
 
 def _colours(objects: Sequence[frozenset[RasterCell]]) -> tuple[str, ...]:
-    """Return the colour of each object: the letters in turn, and then the least used that no neighbour has.
-
-    Neighbours are objects that share an edge.
-    """
+    """Return the colour of each object: the letters in turn, and then the least used that no neighbour has."""
     owner = {cell: number for number, cells in enumerate(objects) for cell in cells}
     colours: list[str] = []
     for number, cells in enumerate(objects):
@@ -259,8 +196,5 @@ def count_corners(mask: Bools) -> int:
 
 
 def outline_of_mask(mask: Bools) -> Any:
-    """Return the outline of the True squares of a mask, a shapely Polygon or MultiPolygon.
-
-    mask : (rows, columns) bool, row 0 in the south; not all False.
-    """
+    """Return the outline of the True squares of a mask, a shapely Polygon or MultiPolygon."""
     return shapely.normalize(mask_to_polygon(mask).simplify(0))

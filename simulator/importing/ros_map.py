@@ -33,24 +33,7 @@ class Occupancy(NamedTuple):
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
-    """Return the scenario of a ROS map.
-
-    What lies beyond the floor and the walls next to it is cut off.
-
-    Parameters
-    ----------
-    path : the .yaml file, or the image; its .yaml is looked for beside it then.
-    options : `scale`, `start` (metres in the map's frame), `unknown_is_floor` and `untrusted` count.
-
-    Returns
-    -------
-    The scenario; its goal is the north-east corner.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read, or `untrusted` forbids it.
-    BadInputError : it is no map, or the robot cannot wake there.
-    """
+    """Return the scenario of a ROS map."""
     path = Path(path)
     notes: tuple[str, ...] = ()
     if path.suffix.lower() == ".pgm":
@@ -88,22 +71,7 @@ def _image(path: Path, head: MapHead, options: ImportOptions) -> Source:
 
 
 def occupancy_of(image: GreyImage, head: MapHead) -> Occupancy:
-    """Return which pixels are occupied and which are free.
-
-    The share of occupancy p of a pixel of value v is (m - v) / m, with m the greatest value, and v / m when the head
-    says `negate`. Above `occupied_thresh` it is occupied, below `free_thresh` it is free. `scale` gives values in
-    between to the rest, which here is as unknown as in `trinary`. In `raw` the value itself is the occupancy in
-    percent, and above 100 it says nothing.
-
-    Parameters
-    ----------
-    image : the pixels.
-    head : the head of the map.
-
-    Returns
-    -------
-    The pixels that are occupied, and those that are free.
-    """
+    """Return which pixels are occupied and which are free."""
     known = np.arange(image.greatest + 1)  # each value that a pixel may have
     if head.mode == "raw":
         share = known / MAX_RAW_OCCUPANCY

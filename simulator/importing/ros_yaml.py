@@ -26,27 +26,17 @@ MAX_METRES = 1e6  # metres of the origin, in absolute value; a convention
 
 @dataclass(frozen=True)
 class MapHead:
-    """The head of a ROS map.
+    """The head of a ROS map."""
 
-    Attributes
-    ----------
-    image : the path of the image, as the file says it.
-    image_span : its place in the file.
-    resolution : metres a pixel.
-    origin : where the south-west corner of the image lies in the map's frame: x and y in metres, yaw in radians.
-    negate : whether white is occupied, and black free.
-    occupied_thresh, free_thresh : the shares of occupancy above which a pixel is occupied, and below which it is free.
-    mode : trinary, scale or raw.
-    """
-
-    image: str
-    image_span: SourceSpan
-    resolution: float
+    image: str  # the path of the image, as the file says it
+    image_span: SourceSpan  # its place in the file
+    resolution: float  # metres a pixel
+    # Where the south-west corner of the image lies in the map's frame: x and y in metres, yaw in radians
     origin: tuple[float, float, float]
-    negate: bool
-    occupied_thresh: float
+    negate: bool  # whether white is occupied, and black free
+    occupied_thresh: float  # the shares of occupancy above which a pixel is occupied, and below which it is free
     free_thresh: float
-    mode: str
+    mode: str  # trinary, scale or raw
 
 
 @dataclass(frozen=True)
@@ -59,21 +49,7 @@ class _Value:
 
 
 def parse_head(source: Source) -> MapHead:
-    """Return the head of a map that a text describes.
-
-    Parameters
-    ----------
-    source : the text. Keys besides those of MapHead are left out; without `negate` it is false, without thresholds
-        they are 0.65 and 0.196, without `mode` it is trinary.
-
-    Returns
-    -------
-    The head.
-
-    Raises
-    ------
-    BadInputError : the text is not as the module says, or values are missing or out of bounds.
-    """
+    """Return the head of a map that a text describes."""
     found = _values(source)
     for name in ("image", "resolution", "origin"):
         if name not in found:

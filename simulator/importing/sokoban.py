@@ -40,38 +40,17 @@ NO_WAY_CELLS = 100_000  # the distance of a box to a storage that no way leads t
 
 @dataclass(frozen=True)
 class Level:
-    """A level of a file.
+    """A level of a file."""
 
-    Attributes
-    ----------
-    first : the place of its first row in the file.
-    rows : its rows from the north; each with the place of every character.
-    """
-
-    first: SourceSpan
+    first: SourceSpan  # the place of its first row in the file
+    # Its rows from the north; each with the place of every character
     rows: tuple[tuple[tuple[str, SourceSpan], ...], ...]
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
-    """Return the scenario of a level.
-
-    In Sokoban any box may go to any storage. Goals of TABLETOP name objects: each box gets a storage of its own, so
-    that the ways of all boxes are the shortest in sum, other boxes left out.
-
-    Parameters
-    ----------
-    path : the file.
-    options : `scale` and `level` count.
-
-    Returns
-    -------
-    The scenario.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : it holds no such level, or the level is none.
-    """
+    """Return the scenario of a level."""
+    # Goals of TABLETOP name objects: each box gets a storage of its own, so that the ways of all boxes are the shortest
+    # in sum, other boxes left out.
     source = text_source(path, read_raw(path, MAX_FILE_BYTES, "a file of Sokoban levels", options.untrusted))
     levels, wanted = 0, None
     for lines in _levels(source):
@@ -212,10 +191,7 @@ def _cells(level: Level) -> dict[RasterCell, str]:
 
 
 def _check(source: Source, level: Level, *found: Sequence[RasterCell]) -> None:
-    """Raise BadInputError unless a level has one robot, a box and a storage.
-
-    found : the cells of robots, those of boxes, and those of storages.
-    """
+    """Raise BadInputError unless a level has one robot, a box and a storage."""
     robot, boxes, storages = found
     problems = []
     if len(robot) > 1:
@@ -232,11 +208,7 @@ def _check(source: Source, level: Level, *found: Sequence[RasterCell]) -> None:
 
 
 def _walls(marks: Mapping[RasterCell, str], robot: RasterCell) -> Bools:
-    """Return the walls, (rows, columns) bool, row 0 in the south.
-
-    Floor from which a way leads to the edge of the drawing is wall, too, unless the robot, a box or a storage is on
-    that floor: it lies outside the level.
-    """
+    """Return the walls, (rows, columns) bool, row 0 in the south."""
     columns, rows = (1 + max(cell[axis] for cell in marks) for axis in (0, 1))
     walls = np.zeros((rows, columns), bool)
     outside: set[RasterCell] = set()
@@ -267,11 +239,7 @@ def _floor_from(start: RasterCell, marks: Mapping[RasterCell, str]) -> dict[Rast
 
 
 def _assigned(walls: Bools, boxes: Sequence[RasterCell], storages: Sequence[RasterCell]) -> list[tuple[int, int]]:
-    """Return pairs of a box and its storage, by their numbers, so that the ways in sum are the shortest.
-
-    As many pairs as there are of the fewer. Boxes take storages one after the other, each by a cheapest chain of
-    exchanges (successive shortest paths with potentials; Edmonds and Karp 1972).
-    """
+    """Return pairs of a box and its storage, by their numbers, so that the ways in sum are the shortest."""
     marks = {(i, j): "#" if wall else " " for (j, i), wall in np.ndenumerate(walls)}
     ways = [_floor_from(box, marks) for box in boxes]
     cost = [[way.get(storage, NO_WAY_CELLS) for storage in storages] for way in ways]

@@ -31,13 +31,7 @@ TRANSFORM_COUNTS = {
 
 
 class SvgError(ValueError):
-    """A text is no path or transform.
-
-    Attributes
-    ----------
-    at : the index of the character where it goes wrong, from 0.
-    what : the reason.
-    """
+    """A text is no path or transform."""
 
     def __init__(self, at: int, what: str) -> None:
         self.at, self.what = at, what
@@ -108,20 +102,6 @@ def _single(name: str, numbers: Sequence[float]) -> Transform:
 def parse_path(text: str, tolerance: float) -> list[SvgRing]:
     """Return the closed rings of path data; a part that is not closed is closed by a chord.
 
-    Parameters
-    ----------
-    text : the `d` attribute.
-    tolerance : how far chords may lie from a curve, in user units, above 0.
-
-    Returns
-    -------
-    Rings of points (x, y) in user units, y down; the last point differs from the first. Parts of fewer than three
-    points are left out.
-
-    Raises
-    ------
-    SvgError : the text is no path, or too long.
-
     Examples
     --------
     >>> parse_path("M 0 0 h 4 v 2 H 0 z", 0.1)
@@ -178,13 +158,7 @@ def _open_ring(ring: SvgRing) -> SvgRing:
 
 
 class _Pen:
-    """Draws the commands of one path.
-
-    Attributes
-    ----------
-    rings : the parts of the path so far.
-    points : how many points they have.
-    """
+    """Draws the commands of one path."""
 
     def __init__(self, tolerance: float) -> None:
         self.rings: list[SvgRing] = [[]]
@@ -195,10 +169,7 @@ class _Pen:
         self._handle: tuple[str, SvgPoint] | None = None  # the kind and the last control point of the last curve
 
     def draw(self, letter: str, numbers: Sequence[float]) -> None:
-        """Carry out one command.
-
-        letter : the command; lower-case for points relative to the last one. numbers : as many as it takes.
-        """
+        """Carry out one command."""
         kind = letter.lower()
         x0, y0 = self._here if letter.islower() else (0.0, 0.0)
         if kind == "z":
@@ -240,11 +211,7 @@ class _Pen:
 
 
 def _bezier(control: Sequence[SvgPoint], tolerance: float) -> list[SvgPoint]:
-    """Return the ends of the chords of a Bezier curve, without its begin.
-
-    The distance to the chords is at most d (d - 1) / 8 times the greatest second difference of the control points, over
-    the square of their number, with d the degree.
-    """
+    """Return the ends of the chords of a Bezier curve, without its begin."""
     degree = len(control) - 1
     bend = max(
         math.hypot(*(p - 2 * q + r for p, q, r in zip(*control[i : i + 3], strict=True))) for i in range(degree - 1)
@@ -264,10 +231,7 @@ def _bezier(control: Sequence[SvgPoint], tolerance: float) -> list[SvgPoint]:
 
 
 def _arc(begin: SvgPoint, numbers: Sequence[float], end: SvgPoint, tolerance: float) -> list[SvgPoint]:
-    """Return the ends of the chords of an elliptic arc, without its begin (SVG 1.1, F.6).
-
-    begin, end : its ends. numbers : both radii, the tilt in degrees, the large-arc flag and the sweep flag.
-    """
+    """Return the ends of the chords of an elliptic arc, without its begin (SVG 1.1, F.6)."""
     rx, ry, large, sweep = abs(numbers[0]), abs(numbers[1]), bool(numbers[3]), bool(numbers[4])
     if begin == end or rx == 0 or ry == 0:
         return [end]
@@ -296,18 +260,7 @@ def _arc(begin: SvgPoint, numbers: Sequence[float], end: SvgPoint, tolerance: fl
 
 
 def shape_path(tag: str, number: Callable[[str], float], points: str = "") -> str | None:
-    """Return the path data of a basic shape; None for other elements, and for shapes without extent.
-
-    Parameters
-    ----------
-    tag : rect, circle, ellipse, polygon or polyline.
-    number : returns the number in an attribute; 0 without it.
-    points : the `points` attribute.
-
-    Returns
-    -------
-    The path data; the corners of a rect are not rounded.
-    """
+    """Return the path data of a basic shape; None for other elements, and for shapes without extent."""
     if tag in ("polygon", "polyline"):
         return f"M {points} z" if points.strip() else None
     if tag == "rect":

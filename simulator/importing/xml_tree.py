@@ -19,20 +19,12 @@ ALLOWED_ENCODINGS = (None, "utf-8", "us-ascii", "ascii")
 
 @dataclass
 class XmlElement:
-    """An element of a document, under construction until the document was read whole.
+    """An element of a document, under construction until the document was read whole."""
 
-    Attributes
-    ----------
-    tag : its name without a prefix, such as `path` for `svg:path`.
-    attributes : its attributes, by their names as they stand (`inkscape:label`).
-    at : the index in the text of the `<` that begins it.
-    children : its elements in order.
-    """
-
-    tag: str
-    attributes: dict[str, str]
-    at: int
-    children: list["XmlElement"] = field(default_factory=list)
+    tag: str  # its name without a prefix, such as `path` for `svg:path`
+    attributes: dict[str, str]  # its attributes, by their names as they stand (`inkscape:label`)
+    at: int  # the index in the text of the `<` that begins it
+    children: list["XmlElement"] = field(default_factory=list)  # its elements in order
 
     def descendants(self) -> Iterator["XmlElement"]:
         """Yield this element and all in it, in the order of the document."""
@@ -44,20 +36,7 @@ class XmlElement:
 
 
 def parse_xml(source: Source) -> XmlElement:
-    """Return the root of a document.
-
-    Parameters
-    ----------
-    source : the file, one letter a byte.
-
-    Returns
-    -------
-    The root element.
-
-    Raises
-    ------
-    BadInputError : it is no well-formed XML in UTF-8, declares entities, or is too deep or too large.
-    """
+    """Return the root of a document."""
     builder = _Builder(source)
     try:
         builder.parser.Parse(source.text.encode("latin-1"), True)
@@ -118,10 +97,7 @@ class _Builder:
 
 
 def span_of(source: Source, start: int, end: int | None = None) -> SourceSpan:
-    """Return the place of the characters of a text from `start` up to `end`; of one without `end`.
-
-    A range over several lines ends with its first line.
-    """
+    """Return the place of the characters of a text from `start` up to `end`; of one without `end`."""
     start = min(max(start, 0), len(source.text))
     line = source.text.count("\n", 0, start) + 1
     begin = source.text.rfind("\n", 0, start) + 1
@@ -135,19 +111,7 @@ def span_of(source: Source, start: int, end: int | None = None) -> SourceSpan:
 def attribute_span(
     source: Source, element: XmlElement, name: str, start: int = 0, end: int | None = None
 ) -> SourceSpan:
-    """Return the place of characters of an attribute's value.
-
-    Parameters
-    ----------
-    source : the file.
-    element : the element.
-    name : the attribute, as it stands. The place is that of the element when it has none.
-    start, end : the range of characters of the value; without `end` the whole value.
-
-    Returns
-    -------
-    The place. Character references in the value before `start` shift it.
-    """
+    """Return the place of characters of an attribute's value."""
     at = element.at + 1 + len(element.tag)
     while element.at >= 0 and name in element.attributes:
         found = ATTRIBUTE.search(source.text, at)

@@ -14,13 +14,7 @@ MAX_ROWS_ASKED = 1_000_000  # rows of an answer that `;` can reach; a convention
 
 
 class Pages:
-    """The rest of an answer, of which a page was printed.
-
-    Parameters
-    ----------
-    query : the query, to be asked again for more rows.
-    answer : its answer, with as many rows as were asked for.
-    """
+    """The rest of an answer, of which a page was printed."""
 
     def __init__(self, query: str, answer: QueryAnswer) -> None:
         self._query, self._answer = query, answer
@@ -47,12 +41,7 @@ class Pages:
 
 
 class FactPages:
-    """The rest of a list of facts, of which a page was printed.
-
-    Parameters
-    ----------
-    facts : all of them.
-    """
+    """The rest of a list of facts, of which a page was printed."""
 
     def __init__(self, facts: Sequence[str]) -> None:
         self._left, self._count = list(facts), len(facts)
@@ -126,10 +115,6 @@ def since(dialogue: Dialogue, rest: str) -> None:
 
 def told_since(answers: list[str]) -> str:
     """Return the sentence about the steps at which something held, from the answer at each step.
-
-    Parameters
-    ----------
-    answers : "yes", "no" or "don't know" for step 0, 1, ...; at least one.
 
     Examples
     --------

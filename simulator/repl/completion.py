@@ -44,34 +44,16 @@ WORD_COMMANDS = ("facts", "diff")  # commands that take a word of the facts
 
 
 class CompletionWord(NamedTuple):
-    """A word that can come next.
+    """A word that can come next."""
 
-    Attributes
-    ----------
-    text : the word; a predicate ends in its bracket.
-    meaning : what it is, in a few words.
-    """
-
-    text: str
-    meaning: str
+    text: str  # the word; a predicate ends in its bracket
+    meaning: str  # what it is, in a few words
 
 
 def completions(
     text: str, commands: Sequence[str], facts: Iterable[str] = (), parameters: Sequence[str] = ()
 ) -> tuple[str, list[CompletionWord]]:
-    """Return the word at the end of a text, and the candidates that complete it, sorted.
-
-    Parameters
-    ----------
-    text : what stands before the cursor, all lines of the statement.
-    commands : the names of all commands.
-    facts : the facts of the world model, whose names are offered.
-    parameters : the names of the task's parameters.
-
-    Returns
-    -------
-    The word that was begun ('' for none) and the candidates that begin with it.
-    """
+    """Return the word at the end of a text, and the candidates that complete it, sorted."""
     found = WORD.search(text)
     word = found[0] if found is not None else ""
     before = text[: len(text) - len(word)]

@@ -20,39 +20,17 @@ MAX_BUG_CHARACTERS = 500  # characters of the text of a bug that are printed; a 
 
 
 class PromptCommand(NamedTuple):
-    """A command of the prompt.
+    """A command of the prompt."""
 
-    Attributes
-    ----------
-    usage : how it is called.
-    summary : what it does, in one line.
-    run : executes it: (dialogue, what was typed behind the name without a full stop at its end).
-    details : more about it, for `help NAME`; '' for nothing.
-    """
-
-    usage: str
-    summary: str
+    usage: str  # how it is called
+    summary: str  # what it does, in one line
+    # Executes it: (dialogue, what was typed behind the name without a full stop at its end)
     run: "Callable[[Dialogue, str], None]"
-    details: str = ""
+    details: str = ""  # more about it, for `help NAME`; '' for nothing
 
 
 class Dialogue:
-    """A conversation about one story: a run or a recorded episode.
-
-    Parameters
-    ----------
-    story : the story.
-    engine : answers queries.
-    printer : prints.
-    commands : the commands by name.
-    explainers : the commands that explain, by name.
-
-    Attributes
-    ----------
-    story : the story; a recorded episode becomes a live run when it is changed.
-    engine, printer, commands, explainers : as given.
-    rest : the rest of an answer of which a page was printed; None for none.
-    """
+    """A conversation about one story: a run or a recorded episode."""
 
     def __init__(
         self,
@@ -94,12 +72,8 @@ class Dialogue:
         return self.engine.ask(self.known_facts(), query, max_rows)
 
     def live_story(self, kind: str, text: str) -> LiveStory:
-        """Return the story as a run that can be changed; a recorded episode is repeated up to this step first.
-
-        Raises BadInputError when the episode cannot be repeated, or the change that is meant has errors.
-
-        kind : assume, retract or goal. text : what is assumed, taken back or wanted.
-        """
+        """Return the story as a run that can be changed; a recorded episode is repeated up to this step first."""
+        # Raises BadInputError when the episode cannot be repeated, or the change that is meant has errors.
         if isinstance(self.story, RecordedStory):
             changed_conditions(self.story.conditions, Change(self.story.at, kind, text), self.story.kb_files)
             self.printer.tell(

@@ -21,25 +21,15 @@ CELL_QUESTION = re.compile(r"cell\s+(\d{1,9})")
 
 
 class Explainer(NamedTuple):
-    """A command that explains.
+    """A command that explains."""
 
-    Attributes
-    ----------
-    usage : how it is called, for `help`.
-    summary : what it does, in one line.
-    explain : returns the explanation of what was typed: (story, rest, depth) -> text.
-    """
-
-    usage: str
-    summary: str
-    explain: Callable[[Story, str, str], str]
+    usage: str  # how it is called, for `help`
+    summary: str  # what it does, in one line
+    explain: Callable[[Story, str, str], str]  # returns the explanation of what was typed: (story, rest, depth) -> text
 
 
 def why(story: Story, rest: str, depth: str) -> str:
-    """Return why a fact is believed, a command was given, or a cell shows what it shows, as a tree of reasons.
-
-    story : the story at its current step. rest : a fact, `step`, or `cell N`. depth : short, mid or long.
-    """
+    """Return why a fact is believed, a command was given, or a cell shows what it shows, as a tree of reasons."""
     questions, at = _questions(story), story.line["step"]
     cell = CELL_QUESTION.fullmatch(rest)
     if rest == "step":

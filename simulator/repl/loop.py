@@ -17,19 +17,7 @@ from simulator.run.recorded_story import RecordedStory
 def converse(
     story: LiveStory | RecordedStory, engine: QueryEngine, explainers: Mapping[str, Explainer] = EXPLAINERS
 ) -> None:
-    """Talk with the user of the standard streams about a story, until the input ends or they leave.
-
-    Parameters
-    ----------
-    story : a run, whose robot may sleep, or a recorded episode.
-    engine : answers queries.
-    explainers : the commands that explain, by name.
-
-    Raises
-    ------
-    StreamError : a standard stream is closed or cannot be used.
-    BrokenPipeError : the reader of the output went away.
-    """
+    """Talk with the user of the standard streams about a story, until the input ends or they leave."""
     printer, history = open_printer(), History()
     dialogue = Dialogue(story, engine, printer, PROMPT_COMMANDS, explainers)
     reader = open_reader(lambda text: complete(dialogue, text), history, lambda text: is_whole(dialogue, text))
@@ -44,12 +32,8 @@ def greet(dialogue: Dialogue, printer: Printer) -> None:
 
 
 def read_and_obey(dialogue: Dialogue, reader: LineReader, history: History | None = None) -> None:
-    """Read lines and execute the statements in them, until the input ends or one says to quit.
-
-    Ctrl-C at a terminal drops the statement that was begun.
-
-    history : remembers statements of a terminal; None to remember none.
-    """
+    """Read lines and execute the statements in them, until the input ends or one says to quit."""
+    # None to remember none.
     buffer = StatementBuffer(dialogue.names)
     while True:
         try:
@@ -87,10 +71,7 @@ def is_whole(dialogue: Dialogue, text: str) -> bool:
 
 
 def complete(dialogue: Dialogue, text: str) -> tuple[str, list[CompletionWord]]:
-    """Return the word at the end of a text and what completes it: what is believed at this step is known by name.
-
-    The robot is not woken for that.
-    """
+    """Return the word at the end of a text and what completes it: what is believed at this step is known by name."""
     facts: list[str] = []
     parameters: list[str] = []
     try:

@@ -27,16 +27,10 @@ _Row = tuple[str, ...]
 
 
 class BeliefPicture(NamedTuple):
-    """The believed map.
+    """The believed map."""
 
-    Attributes
-    ----------
-    rows : the lines of the picture with the labels of its axes, the north first.
-    legend : lines that say what its marks are, its unit and its frame.
-    """
-
-    rows: tuple[str, ...]
-    legend: tuple[str, ...]
+    rows: tuple[str, ...]  # the lines of the picture with the labels of its axes, the north first
+    legend: tuple[str, ...]  # lines that say what its marks are, its unit and its frame
 
 
 class _Facts:
@@ -57,10 +51,7 @@ class _Facts:
         return [row for row in self.rows(name, arity) if row[0] == thing]
 
     def numbers(self, name: str, arity: int, words: int) -> Iterator[tuple[_Row, list[int]]]:
-        """Yield of each fact of a predicate its first arguments as text and the others as integers.
-
-        Facts whose other arguments are no integers are left out.
-        """
+        """Yield of each fact of a predicate its first arguments as text and the others as integers."""
         for row in self.rows(name, arity):
             try:
                 yield row[:words], [int(part) for part in row[words:]]
@@ -84,18 +75,7 @@ class _Grid(NamedTuple):
 
 
 def draw_belief(facts: Iterable[str], width: int | None = None) -> BeliefPicture:
-    """Return the believed map: floor, verge, objects, doors and Utak; what was not seen is blank.
-
-    Parameters
-    ----------
-    facts : the facts of the world model, with full stops.
-    width : the greatest number of characters in a line; None for MAX_PICTURE_COLUMNS and the labels. A wider map is
-        drawn with several squares to a character.
-
-    Returns
-    -------
-    The picture and its legend. Without outlines in the facts, the picture has no rows.
-    """
+    """Return the believed map: floor, verge, objects, doors and Utak; what was not seen is blank."""
     known = _Facts(facts)
     rings: dict[str, list[list[int]]] = defaultdict(list)
     for (node,), (_, *ends) in known.numbers("segment", 7, 1):
@@ -162,10 +142,7 @@ def _grid(rings: Mapping[str, list[list[int]]], width: int | None) -> _Grid:
 
 
 def _inside(segments: Floats, grid: _Grid) -> Bools:
-    """Return which characters' middles lie within rings of segments, by crossings: (rows, columns) bool.
-
-    segments : (n, 4) east, north of both ends, in hundredths of squares.
-    """
+    """Return which characters' middles lie within rings of segments, by crossings: (rows, columns) bool."""
     inside = np.zeros((grid.rows, grid.columns), dtype=bool)
     middles = grid.west + grid.unit * (np.arange(grid.columns) + 0.5)
     e1, n1, e2, n2 = segments.T

@@ -22,13 +22,7 @@ UNITS = {
 
 
 class Printer:
-    """Prints answers and messages.
-
-    Parameters
-    ----------
-    is_terminal : whether a person reads at a terminal: long answers come a page at a time, and units are told.
-    console : the console of `rich`, for colours; None for plain text.
-    """
+    """Prints answers and messages."""
 
     def __init__(self, is_terminal: bool = False, console: Any = None) -> None:
         self.is_terminal, self._console = is_terminal, console

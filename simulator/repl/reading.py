@@ -24,10 +24,7 @@ class LineReader(Protocol):
         """Whether a person types the lines."""
 
     def read(self, prompt: str, is_open: bool) -> str:
-        """Return the next line, or several; raise EOFError at the end, StreamError when it cannot be read.
-
-        prompt : what is printed before it on a terminal. is_open : whether it continues a statement.
-        """
+        """Return the next line, or several; raise EOFError at the end, StreamError when it cannot be read."""
 
 
 class PipedLines:
@@ -61,13 +58,7 @@ class PromptingLines:
 
 
 class ReadlineLines:
-    """The lines of a terminal, with Python's readline where there is one.
-
-    Parameters
-    ----------
-    complete : completes a text.
-    history : the statements of earlier conversations.
-    """
+    """The lines of a terminal, with Python's readline where there is one."""
 
     is_terminal = True
 
@@ -110,14 +101,7 @@ class ReadlineLines:
 
 
 class ToolkitLines:
-    """The statements of a terminal, with prompt_toolkit: several lines are edited together.
-
-    Parameters
-    ----------
-    complete : completes a text.
-    history : the statements of earlier conversations.
-    is_whole : returns whether a text is a whole statement, so that Enter ends it.
-    """
+    """The statements of a terminal, with prompt_toolkit: several lines are edited together."""
 
     is_terminal = True
 

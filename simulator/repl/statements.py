@@ -12,13 +12,7 @@ OPEN_END = re.compile(r"(,|;|:|:-|=|<|>|\|)$")  # a fact command goes on after s
 
 
 def is_query(text: str, commands: Collection[str]) -> bool:
-    """Return whether a statement that begins with this text is a query.
-
-    Parameters
-    ----------
-    text : the first line of the statement.
-    commands : the names of all commands. `goal(X)` is a query, `goal at(utak,x)` a command.
-    """
+    """Return whether a statement that begins with this text is a query."""
     text = text.lstrip()
     if text.startswith(QUERY_SIGN):
         return True
@@ -45,8 +39,6 @@ def without_comment(line: str) -> str:
 
 def query_end(text: str) -> int:
     """Return the index behind the full stop that ends a query; -1 when there is none.
-
-    A full stop is no part of `..`, stands outside quotes, and is followed by a blank or by nothing.
 
     >>> query_end("X = 1..3, room(R). help")
     18
@@ -75,12 +67,7 @@ def has_open_end(text: str) -> bool:
 
 
 class StatementBuffer:
-    """Collects lines until they are statements.
-
-    Parameters
-    ----------
-    commands : the names of all commands.
-    """
+    """Collects lines until they are statements."""
 
     def __init__(self, commands: Collection[str]) -> None:
         self._commands = commands
@@ -102,11 +89,7 @@ class StatementBuffer:
         return [text] if text else []
 
     def feed(self, line: str) -> list[str]:
-        """Take a line and return the statements that it completes, in order.
-
-        An empty line, and a line that begins with `?-`, end a statement that was begun. So does a command, where the
-        statement needs nothing more to be one.
-        """
+        """Take a line and return the statements that it completes, in order."""
         line = line.rstrip("\r\n")
         done: list[str] = []
         if self.is_open and (not line.strip() or line.lstrip().startswith(QUERY_SIGN) or self._is_left(line)):

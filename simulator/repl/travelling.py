@@ -68,10 +68,7 @@ def goto(dialogue: Dialogue, rest: str) -> None:
 
 
 def advance(dialogue: Dialogue, count: int | None) -> None:
-    """Advance by `count` steps, or to the end for None, and print each step.
-
-    The first Ctrl-C lets a step come to its end; the second breaks it off, and then it did not happen.
-    """
+    """Advance by `count` steps, or to the end for None, and print each step."""
     story, printer, done = dialogue.story, dialogue.printer, 0
 
     def announce() -> None:
@@ -127,15 +124,7 @@ def diff(dialogue: Dialogue, rest: str) -> None:
 
 
 def differences(before: Sequence[str], after: Sequence[str], word: str = "") -> list[str]:
-    """Return the facts of two steps that hold at one of them alone: `- fact`, `+ fact`, sorted by the fact.
-
-    Outlines are counted, not listed, unless a word is given.
-
-    Parameters
-    ----------
-    before, after : the facts.
-    word : only facts that name it are compared; '' for all.
-    """
+    """Return the facts of two steps that hold at one of them alone: `- fact`, `+ fact`, sorted by the fact."""
     old, new = ({fact for fact in facts if not word or names_word(fact, word)} for facts in (before, after))
     changes = sorted((fact, sign) for sign, facts in (("-", old - new), ("+", new - old)) for fact in facts)
     listed = [f"{sign} {fact}" for fact, sign in changes if word or not fact.startswith(OUTLINE_START)]

@@ -10,19 +10,12 @@ WHOLE_ARGUMENT = re.compile(r"([(,])-?\d+(?=[,)])", re.ASCII)  # an argument tha
 
 
 class Changes(NamedTuple):
-    """The difference between the facts of two steps.
+    """The difference between the facts of two steps."""
 
-    Attributes
-    ----------
-    added, removed : facts that are new, or gone.
-    changed : pairs of a former and a new fact that differ in numbers alone.
-    edges : how many edges of each node's outline are new, or gone where none is new.
-    """
-
-    added: list[str]
+    added: list[str]  # facts that are new, or gone
     removed: list[str]
-    changed: list[tuple[str, str]]
-    edges: dict[str, int]
+    changed: list[tuple[str, str]]  # pairs of a former and a new fact that differ in numbers alone
+    edges: dict[str, int]  # how many edges of each node's outline are new, or gone where none is new
 
 
 def changes(before: Sequence[str], after: Sequence[str]) -> Changes:

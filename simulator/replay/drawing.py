@@ -27,17 +27,11 @@ DrawnPoint = Sequence[float]
 
 
 class PlacedFrame(NamedTuple):
-    """The place of the robot frame on a picture.
+    """The place of the robot frame on a picture."""
 
-    Attributes
-    ----------
-    x, y : its origin, in squares of the picture's frame.
-    degrees : its rotation, counter-clockwise positive.
-    """
-
-    x: float
+    x: float  # its origin, in squares of the picture's frame
     y: float
-    degrees: float
+    degrees: float  # its rotation, counter-clockwise positive
 
     def place(self, east: float, north: float) -> tuple[float, float]:
         """Return a point of the robot frame in the picture's frame, in squares."""
@@ -46,12 +40,7 @@ class PlacedFrame(NamedTuple):
 
 
 class Canvas:
-    """A picture that is drawn part by part.
-
-    Parameters
-    ----------
-    west, south, east, north : what is shown, in squares.
-    """
+    """A picture that is drawn part by part."""
 
     def __init__(self, west: float, south: float, east: float, north: float) -> None:
         self._west, self._north = west, north
@@ -103,23 +92,7 @@ def table_svg(
     step: Mapping[str, Any] | None = None,
     track: Sequence[DrawnPoint] = (),
 ) -> str:
-    """Return a picture of the table as it is, and upon it what is sensed and believed.
-
-    Parameters
-    ----------
-    world : World
-        The table at the start.
-    polygons : mapping of str to shapely Polygon, optional
-        The outlines of movable things by name, table frame; those at the start if None.
-    utak : (x, y), optional
-        Where the robot is, table frame; where it wakes if None.
-    held : str, optional
-        The name of the thing in hand.
-    step : mapping, optional
-        The line of an episode, whose retina and belief are drawn; None for the table alone.
-    track : sequence of (x, y)
-        Where the robot has been, table frame.
-    """
+    """Return a picture of the table as it is, and upon it what is sensed and believed."""
     canvas = Canvas(0, 0, world.width, world.height)
     now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
     canvas.polygons(_rings(world.verge), f"fill:{letter_fill(VERGE_COLOUR)}")
@@ -140,10 +113,7 @@ def table_svg(
 
 
 def step_svg(episode: Episode, line: Mapping[str, Any]) -> str:
-    """Return a picture of the table at a step of an episode, and upon it what is sensed and believed.
-
-    episode : the run, up to the step at least. line : that of the step.
-    """
+    """Return a picture of the table at a step of an episode, and upon it what is sensed and believed."""
     polygons = {name: shapely.Polygon(ring) for name, ring in line["objects"].items()}
     track = [step["utak"] for step in episode.steps[: line["step"] + 1]]
     world = replace(recorded_world(episode.header), utak=(float(track[0][0]), float(track[0][1])))
@@ -151,15 +121,7 @@ def step_svg(episode: Episode, line: Mapping[str, Any]) -> str:
 
 
 def belief_svg(facts: Sequence[str], place: DrawnPoint) -> str:
-    """Return a picture of what is believed alone, in the robot frame.
-
-    Parameters
-    ----------
-    facts : sequence of str
-        The facts of the world model.
-    place : (east, north)
-        Where the robot believes it is, squares.
-    """
+    """Return a picture of what is believed alone, in the robot frame."""
     ends = [(east, north) for _, start, end, _ in segments(facts) for east, north in (start, end)] or [(0.0, 0.0)]
     east, north = ([float(value) for value in values] for values in zip(*ends, (place[0], place[1]), strict=True))
     canvas = Canvas(min(east) - 1, min(north) - 1, max(east) + 1, max(north) + 1)

@@ -46,21 +46,13 @@ Pixels = list[tuple[float, float]]
 
 
 class GifScale(NamedTuple):
-    """Places squares of the table, and hundredths of squares of the robot frame, on a picture.
+    """Places squares of the table, and hundredths of squares of the robot frame, on a picture."""
 
-    Attributes
-    ----------
-    width, height : of the table, in squares.
-    pixels : the side of a square.
-    origin : where the robot woke, in squares, table frame.
-    heading : the direction in which it faced then, in degrees, counter-clockwise from the table's north.
-    """
-
-    width: int
+    width: int  # of the table, in squares
     height: int
-    pixels: float
-    origin: tuple[float, float]
-    heading: float
+    pixels: float  # the side of a square
+    origin: tuple[float, float]  # where the robot woke, in squares, table frame
+    heading: float  # the direction in which it faced then, in degrees, counter-clockwise from the table's north
 
     def table(self, x: float, y: float) -> tuple[float, float]:
         """Return the pixel of a point of the table."""
@@ -75,16 +67,7 @@ class GifScale(NamedTuple):
 
 
 def animation(episode: Episode) -> bytes:
-    """Return an episode as a GIF picture.
-
-    Parameters
-    ----------
-    episode : the episode, with one step at least.
-
-    Returns
-    -------
-    The bytes of the picture: one frame a step.
-    """
+    """Return an episode as a GIF picture."""
     frames = _frames(episode)
     first = next(frames)
     times = [STEP_MILLISECONDS] * (len(episode.steps) - 1) + [END_MILLISECONDS]

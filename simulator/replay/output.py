@@ -14,10 +14,8 @@ MAX_NESTING = 100  # levels of lists and objects within each other; ours have ab
 
 
 def read_replayable(path: Path | str) -> Episode:
-    """Return an episode with one step at least.
-
-    Raises CannotOpenError when it cannot be read, BadInputError when it is damaged or has no step.
-    """
+    """Return an episode with one step at least."""
+    # Raises CannotOpenError when it cannot be read, BadInputError when it is damaged or has no step.
     episode = read_begun_episode(path)
     for number, line in enumerate((episode.header, *episode.steps), 1):
         if not _is_shallow(line):
@@ -40,25 +38,7 @@ def _is_shallow(value: Any) -> bool:
 def write_page(
     path: Path | str, episode: Episode, force: bool = False, rule_files: Sequence[str] = (), name: str = ""
 ) -> str:
-    """Write the page of an episode, with trees of reasons.
-
-    Parameters
-    ----------
-    path : the file.
-    episode : the episode.
-    force : whether to overwrite what is no page.
-    rule_files : the paths of the files with users' rules that took part, for the reasons.
-    name : of the scenario, for the title.
-
-    Returns
-    -------
-    What the reasons lack, in a line that also stands in the page: rules of the run that are not given; "" for nothing.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be written, a file of rules cannot be read, or this Python has not its module
-        lzma.
-    """
+    """Write the page of an episode, with trees of reasons."""
     from simulator.explaining.missing_rules import missing_rules
     from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
 
@@ -80,18 +60,7 @@ def check_page_path(path: Path | str, force: bool = False) -> None:
 
 
 def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:
-    """Write an episode as a moving picture.
-
-    Parameters
-    ----------
-    path : the file.
-    episode : the episode.
-    force : whether to overwrite what is no GIF picture.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be written, or pillow is not installed.
-    """
+    """Write an episode as a moving picture."""
     try:
         from simulator.replay.gif import animation
     except ImportError:

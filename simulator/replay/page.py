@@ -30,24 +30,7 @@ MAX_TITLE_CHARACTERS = 300  # of a title made from an episode's goals; a convent
 def replay_page(
     episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None, lacking: str = "", name: str = ""
 ) -> str:
-    """Return an episode as a page of HTML that plays it.
-
-    Parameters
-    ----------
-    episode : the episode; it may have been cut short, but has step 0.
-    trees : explanations to be shown with steps, by step: lists of `{"text": str, "children": [...]}`, whose children
-        are of the same form.
-    lacking : what the explanations lack, in a line; "" for nothing.
-    name : of the scenario, for the title; "" where it is not known.
-
-    Returns
-    -------
-    The whole page.
-
-    Raises
-    ------
-    ValueError : the episode has no step.
-    """
+    """Return an episode as a page of HTML that plays it."""
     if not episode.steps:
         raise ValueError("an episode without a step cannot be replayed")
     loader, player = (_script(names) for names in (LOADER, PLAYER))

@@ -14,21 +14,7 @@ MAX_LISTED_FACTS = 40  # facts of one kind of change that a step lists; a conven
 
 
 def transcript(name: str, episode: Episode) -> Iterator[str]:
-    """Yield the text of each step of an episode, and of its end.
-
-    Parameters
-    ----------
-    name : the name of the file, for messages.
-    episode : the episode, with one step at least.
-
-    Yields
-    ------
-    Text with line ends, one step at a time.
-
-    Raises
-    ------
-    BadInputError : a step records no table that can be drawn.
-    """
+    """Yield the text of each step of an episode, and of its end."""
     story = RecordedStory(name, episode)
     before: list[str] | None = None
     planned: list[str] = []

@@ -15,10 +15,7 @@ TRUE_TABLE = "the true table, which the robot may believe to be otherwise:"
 
 
 class TableWatch:
-    """Draws the true table on the standard error after every step.
-
-    On a terminal in which the table has room, each picture takes the place of the former one.
-    """
+    """Draws the true table on the standard error after every step."""
 
     def __init__(self) -> None:
         self._rows = 0  # rows of the picture that stands in the terminal

@@ -19,18 +19,11 @@ CHANGE_KINDS = ("assume", "retract", "goal")  # as commands of `utak repl` and e
 
 @dataclass(frozen=True)
 class Change:
-    """One change of a run.
+    """One change of a run."""
 
-    Attributes
-    ----------
-    step : the step from which it counts: the impression of this step is interpreted with it.
-    kind : assume, retract or goal.
-    text : what is assumed, taken back or wanted, as written, in one line.
-    """
-
-    step: int
-    kind: str
-    text: str
+    step: int  # the step from which it counts: the impression of this step is interpreted with it
+    kind: str  # assume, retract or goal
+    text: str  # what is assumed, taken back or wanted, as written, in one line
 
     @property
     def entry(self) -> EpisodeLine:
@@ -39,37 +32,15 @@ class Change:
 
 
 class RunConditions(NamedTuple):
-    """The conditions that count at a step besides the scenario.
+    """The conditions that count at a step besides the scenario."""
 
-    Attributes
-    ----------
-    assumptions : what is assumed, in the order in which it was assumed.
-    task : the task; its goals may be others than those of the scenario.
-    is_changed_task : whether the goals are others than those of the scenario.
-    """
-
-    assumptions: tuple[Assumption, ...]
-    task: Task
-    is_changed_task: bool = False
+    assumptions: tuple[Assumption, ...]  # what is assumed, in the order in which it was assumed
+    task: Task  # the task; its goals may be others than those of the scenario
+    is_changed_task: bool = False  # whether the goals are others than those of the scenario
 
 
 def changed_conditions(before: RunConditions, change: Change, kb_files: Sequence[str]) -> RunConditions:
-    """Return the conditions after a change.
-
-    Parameters
-    ----------
-    before : the conditions before it.
-    change : the change.
-    kb_files : the paths of the user's rule files.
-
-    Returns
-    -------
-    The new conditions.
-
-    Raises
-    ------
-    BadInputError : the text of the change has errors, is assumed already, or is not assumed.
-    """
+    """Return the conditions after a change."""
     if change.kind == "goal":
         source = source_from_bytes("goal", _ended(change.text).encode("utf-8", errors="surrogateescape"))
         return before._replace(task=task_with_goals(before.task, source), is_changed_task=True)

@@ -21,44 +21,18 @@ from simulator.scenario.settings import Settings
 
 
 class RunStage(NamedTuple):
-    """A part of a run with one task and one set of options.
+    """A part of a run with one task and one set of options."""
 
-    Attributes
-    ----------
-    until : the number of the last step of the part; its belief is that of the following part.
-    scenario : the world and the task; without expectations.
-    settings : the options.
-    entry : the part as an element of `forked`.
-    """
-
-    until: int
-    scenario: Scenario
-    settings: Settings
-    entry: EpisodeLine
+    until: int  # the number of the last step of the part; its belief is that of the following part
+    scenario: Scenario  # the world and the task; without expectations
+    settings: Settings  # the options
+    entry: EpisodeLine  # the part as an element of `forked`
 
 
 def stages_until(
     name: str, head: EpisodeLine, step: int | None, scenario: Scenario, kb_files: Sequence[str]
 ) -> list[RunStage]:
-    """Return the stages of a recorded run up to a step.
-
-    Parameters
-    ----------
-    name : the name of the episode, for messages.
-    head : its header.
-    step : the last step of the last stage. None for the stages before the last fork: [] when there was none.
-    scenario : the scenario in whose world the run is repeated.
-    kb_files : files of rules, among which those of the recorded run are found by their sums.
-
-    Returns
-    -------
-    The stages, in order.
-
-    Raises
-    ------
-    CannotOpenError : a file of rules cannot be read.
-    BadInputError : the world is another one, a file of rules is missing, or the header is damaged.
-    """
+    """Return the stages of a recorded run up to a step."""
     if encode(head["world"]) != encode(header(scenario, Settings())["world"]):
         raise _unlike(name, 1, "the episode is of another world than the scenario's", "a fork keeps the world")
     steps = [change.get("step") for change in head.get("changes", ())]
@@ -114,24 +88,7 @@ def repeat_stages(
     log: EpisodeLog,
     check: Callable[[EpisodeLine], None] = lambda line: None,
 ) -> Session:
-    """Return a session at the end of some stages, ready to go on with a scenario and settings.
-
-    Parameters
-    ----------
-    stages : the stages that are repeated, at least one.
-    scenario, settings : those of the stage that follows; its first line is the last one of the stages, made anew.
-    make : makes the robot.
-    log : the episode that is written; its header names the stages.
-    check : called with each line, the last one as it is before the following stage; raises when it is not as wanted.
-
-    Returns
-    -------
-    The session.
-
-    Raises
-    ------
-    BadInputError : the run ends before the stages do, or `check` raises.
-    """
+    """Return a session at the end of some stages, ready to go on with a scenario and settings."""
     session = Session(stages[0].scenario, stages[0].settings, make, EpisodeLog(None))
     log.write(header(scenario, settings) | {"forked": [stage.entry for stage in stages]})
     session.wake()
@@ -162,27 +119,7 @@ def repeat_until(
     log: EpisodeLog,
     kb_files: Sequence[str] = (),
 ) -> Session:
-    """Return a session that repeated a recorded run up to a step, ready to go on with a scenario and settings.
-
-    Parameters
-    ----------
-    name : the name of the episode, for messages.
-    episode : the recorded run.
-    step : the number of the last step that is repeated. It is interpreted anew, with what counts from then on.
-    scenario, settings : the task, the expectations and the options from then on.
-    make : makes the robot.
-    log : the episode that is written.
-    kb_files : files of rules, among which those of the recorded run are found; those of `settings` are looked at, too.
-
-    Returns
-    -------
-    The session.
-
-    Raises
-    ------
-    CannotOpenError : a file of rules cannot be read.
-    BadInputError : there is no such step, the world is another one, or the run does not repeat the recorded lines.
-    """
+    """Return a session that repeated a recorded run up to a step, ready to go on with a scenario and settings."""
     place = str(name)
     if not 0 <= step < len(episode.steps):
         last = len(episode.steps) - 1

@@ -8,14 +8,9 @@ from types import FrameType
 
 
 class InterruptCount:
-    """The number of times that Ctrl-C was pressed in a block; true when it was pressed at all.
+    """The number of times that Ctrl-C was pressed in a block; true when it was pressed at all."""
 
-    Attributes
-    ----------
-    times : the number.
-    """
-
-    times = 0
+    times = 0  # the number
 
     def __bool__(self) -> bool:
         return self.times > 0
@@ -23,10 +18,7 @@ class InterruptCount:
 
 @contextmanager
 def end_at_request() -> Iterator[None]:
-    """Let SIGTERM raise KeyboardInterrupt in a `with` block, so that all is cleaned up; then end by SIGTERM.
-
-    Nothing changes outside of the main thread, or where SIGTERM is ignored.
-    """
+    """Let SIGTERM raise KeyboardInterrupt in a `with` block, so that all is cleaned up; then end by SIGTERM."""
     asked = False
 
     def note(number: int, frame: FrameType | None) -> None:
@@ -50,19 +42,8 @@ def end_at_request() -> Iterator[None]:
 
 @contextmanager
 def defer_interrupt(tell: Callable[[], object]) -> Iterator[InterruptCount]:
-    """Hold back the first Ctrl-C until the end of a `with` block.
-
-    The block's value tells afterwards whether Ctrl-C was pressed. The second Ctrl-C raises KeyboardInterrupt in the
-    block. Nothing is held back outside of the main thread, or where Ctrl-C is ignored.
-
-    Parameters
-    ----------
-    tell : called at the first Ctrl-C.
-
-    Yields
-    ------
-    The count of interrupts.
-    """
+    """Hold back the first Ctrl-C until the end of a `with` block."""
+    # The second Ctrl-C raises KeyboardInterrupt in the block.
     pressed, before = InterruptCount(), signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
         yield pressed

@@ -21,24 +21,15 @@ MAX_KEPT_SESSIONS = 12  # copies of the run that are kept for going on from earl
 
 
 class StoryMoment(NamedTuple):
-    """All that a live story knows at one moment. It is replaced as a whole, so an interrupt cannot tear it.
+    """All that a live story knows at one moment. It is replaced as a whole, so an interrupt cannot tear it."""
 
-    Attributes
-    ----------
-    lines : the lines of all steps seen so far; () while the robot sleeps.
-    at : the current step.
-    result : the end of the run, which belongs to the last line; None while it goes on.
-    sessions : copies of the run, by the step at which each rests.
-    conditions : what counts besides the scenario, by the step from which it counts; there is one for -1.
-    changes : the changes of the run, in the order of their steps.
-    """
-
-    lines: tuple[EpisodeLine, ...]
-    at: int
-    result: EpisodeLine | None
-    sessions: Mapping[int, Session]
+    lines: tuple[EpisodeLine, ...]  # the lines of all steps seen so far; () while the robot sleeps
+    at: int  # the current step
+    result: EpisodeLine | None  # the end of the run, which belongs to the last line; None while it goes on
+    sessions: Mapping[int, Session]  # copies of the run, by the step at which each rests
+    # What counts besides the scenario, by the step from which it counts; there is one for -1
     conditions: Mapping[int, RunConditions]
-    changes: tuple[Change, ...] = ()
+    changes: tuple[Change, ...] = ()  # the changes of the run, in the order of their steps
 
     def conditions_at(self, step: int) -> RunConditions:
         """Return what counts at a step besides the scenario."""
@@ -55,21 +46,7 @@ class StoryMoment(NamedTuple):
 
 
 class LiveStory:
-    """A run of the robot in a scenario, with all lines seen so far. The robot wakes when the first line is asked for.
-
-    A step is complete or did not happen: every step is made by a copy of the run. From a step in the past the story
-    goes on along the lines seen. A change there forks it: the later lines are dropped.
-
-    Parameters
-    ----------
-    scenario : the scenario.
-    settings : the options of the run.
-    make : makes the robot.
-
-    Attributes
-    ----------
-    scenario, settings : as given.
-    """
+    """A run of the robot in a scenario, with all lines so far. The robot wakes when the first line is asked for."""
 
     def __init__(self, scenario: Scenario, settings: Settings, make: RobotMaker = make_robot) -> None:
         self.scenario, self.settings = scenario, settings
@@ -181,24 +158,7 @@ class LiveStory:
     # ---- changing ----
 
     def change(self, kind: str, text: str) -> RunConditions:
-        """Change the run from the current step on: the impression of this step is interpreted anew.
-
-        Later lines are dropped, unless the change counts for queries alone. When anything fails, nothing is changed.
-
-        Parameters
-        ----------
-        kind : assume, retract or goal.
-        text : what is assumed, taken back or wanted.
-
-        Returns
-        -------
-        The conditions that count now.
-
-        Raises
-        ------
-        BadInputError : the text has errors, or contradicts what is believed.
-        CannotAdoptError : the robot takes no changes.
-        """
+        """Change the run from the current step on: the impression of this step is interpreted anew."""
         moment = self._awake()
         new = Change(moment.at, kind, " ".join(text.split()))
         after = changed_conditions(moment.conditions_at(moment.at), new, self.settings.kb_files)
@@ -227,10 +187,7 @@ class LiveStory:
         return (*self.settings.kb_files, *self._rules.files(conditions.assumptions))
 
     def _session_at(self, moment: StoryMoment, step: int) -> Session:
-        """Return a session that rests at a step and may be used freely; for -1 one of a robot that sleeps.
-
-        It is copied from the nearest one that is kept, or made anew, and runs up to the step.
-        """
+        """Return a session that rests at a step and may be used freely; for -1 one of a robot that sleeps."""
         nearest = max((kept for kept in moment.sessions if kept <= step), default=-1)
         session: Session | None = None
         if nearest >= 0:

@@ -25,18 +25,7 @@ WORLD_KEYS = ("step", "action", "motion", "utak", "held", "objects", "retina", "
 
 
 class RecordedStory:
-    """An episode that was read from a file.
-
-    Parameters
-    ----------
-    name : the name of the file, for messages.
-    episode : the episode.
-    kb_files : the paths of the rule files with which it was made, as far as they are given again.
-
-    Attributes
-    ----------
-    name, kb_files : as given.
-    """
+    """An episode that was read from a file."""
 
     def __init__(self, name: str, episode: Episode, kb_files: tuple[str, ...] = ()) -> None:
         self.name, self._episode, self.kb_files = name, episode, kb_files
@@ -103,10 +92,8 @@ class RecordedStory:
 
     @property
     def conditions(self) -> RunConditions:
-        """The conditions that count at the current step besides the scenario, as far as the header states them.
-
-        Changes with errors are left out. Raises BadInputError when the header's task has errors.
-        """
+        """The conditions that count at the current step besides the scenario, as far as the header states them."""
+        # Raises BadInputError when the header's task has errors.
         conditions = RunConditions((), self._scenario().task)
         for change in self.changes:
             with suppress(BadInputError):
@@ -161,24 +148,7 @@ class RecordedStory:
     def relive(
         self, tell: Callable[[int], object] = lambda step: None, make: RobotMaker = make_robot
     ) -> tuple[LiveStory, int | None]:
-        """Return a live run that repeats this episode, at the current step.
-
-        The run is made from the header's world, task, options and changes. What happens in the world must come out
-        again exactly as it was recorded; what the robot believes may differ, where another version recorded it.
-
-        Parameters
-        ----------
-        tell : called with the number of each step that was repeated.
-        make : makes the robot.
-
-        Returns
-        -------
-        The run, and the first step at which what is believed differs from what was recorded; None for none.
-
-        Raises
-        ------
-        BadInputError : the run cannot be repeated; the problem says why.
-        """
+        """Return a live run that repeats this episode, at the current step."""
         scenario = self._scenario()
         try:
             settings = recorded_settings(self.header, self.kb_files)

@@ -100,32 +100,19 @@ RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
 
 @dataclass(frozen=True)
 class Result:
-    """The end of a run.
+    """The end of a run."""
 
-    Attributes
-    ----------
-    believed : whether Utak believes that the task is done.
-    achieved : whether it is done by expect.lp; None without expect.lp.
-    verdict : done, impossible, possible_if or limit.
-    reason : the reason in words.
-    steps : the number of commands.
-    unmet : the expectations that the truth does not meet, as text.
-    came : what came instead of each of them, in words.
-    outcomes : what came of each expectation that a test tests, with its points.
-    seconds : the limit of time that ended the run; None when the robot ended it.
-    idle_rules : the users' rules that never applied, in words with file and line.
-    """
-
-    believed: bool
-    achieved: bool | None
-    verdict: str
-    reason: str
-    steps: int
-    unmet: tuple[str, ...] = field(default=())
-    came: tuple[str, ...] = field(default=())
+    believed: bool  # whether Utak believes that the task is done
+    achieved: bool | None  # whether it is done by expect.lp; None without expect.lp.
+    verdict: str  # done, impossible, possible_if or limit
+    reason: str  # the reason in words
+    steps: int  # the number of commands
+    unmet: tuple[str, ...] = field(default=())  # the expectations that the truth does not meet, as text
+    came: tuple[str, ...] = field(default=())  # what came instead of each of them, in words
+    # What came of each expectation that a test tests, with its points
     outcomes: tuple[ExpectationOutcome, ...] = field(default=())
-    seconds: float | None = None
-    idle_rules: tuple[str, ...] = field(default=())
+    seconds: float | None = None  # the limit of time that ended the run; None when the robot ended it
+    idle_rules: tuple[str, ...] = field(default=())  # the users' rules that never applied, in words with file and line
 
     @property
     def line(self) -> EpisodeLine:
@@ -146,19 +133,7 @@ class _LimitVerdict:
 
 
 class Session:
-    """A run that is advanced step by step.
-
-    Parameters
-    ----------
-    scenario : the scenario.
-    settings : the options of the run.
-    make : makes the robot from its body, the task and the settings.
-    log : the episode that is written.
-
-    Attributes
-    ----------
-    line : the last line of the episode so far.
-    """
+    """A run that is advanced step by step."""
 
     def __init__(self, scenario: Scenario, settings: Settings, make: RobotMaker, log: EpisodeLog) -> None:
         self.scenario, self.settings = scenario, settings
@@ -169,36 +144,15 @@ class Session:
         self._track: list[Snapshot] = []
 
     def wake(self, limit: TimeLimit | None = None) -> EpisodeLine:
-        """Write the header, let the robot wake, write step 0 and return that line.
-
-        limit : raises TimeOver while the robot wakes when the time is over; step 0 is not written then. None for none.
-        """
+        """Write the header, let the robot wake, write step 0 and return that line."""
+        # None for none.
         self._log.write(header(self.scenario, self.settings))
         with self._cutting(limit):
             report = self.robot.wake()
         return self._record(report)
 
     def adopt(self, scenario: Scenario, settings: Settings) -> EpisodeLine:
-        """Go on from the present step with another scenario in the same world, and with other options.
-
-        This is the one way in which a run is changed from outside. The change counts from the present step on: what
-        happened in the world stays, its impression is interpreted anew, and the next command is decided anew. Other
-        noise counts from the next command on.
-
-        Parameters
-        ----------
-        scenario : the task and the expectations from now on; its world is the same.
-        settings : the options from now on. With another seed, the randomness begins anew.
-
-        Returns
-        -------
-        The last line, with what is believed now. It is not written: the line of before may stand in the episode.
-
-        Raises
-        ------
-        CannotAdoptError : the robot cannot do that.
-        BadInputError : users' rules have errors. The session must not be used any more.
-        """
+        """Go on from the present step with another scenario in the same world, and with other options."""
         if not isinstance(self.robot, AdoptingRobotProtocol):
             raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
         report = self.robot.adopt(scenario.task, settings)
@@ -213,13 +167,8 @@ class Session:
         log.write(self.line)
 
     def step(self, limit: TimeLimit | None = None) -> EpisodeLine:
-        """Let the robot act once, write what happened, and return the last line.
-
-        A step without a command is not written.
-
-        limit : raises TimeOver within the step when the time is over. Nothing is written then, and the session must not
-        go on. None for none.
-        """
+        """Let the robot act once, write what happened, and return the last line."""
+        # None for none.
         with self._cutting(limit):
             report = self.robot.step()
         return self.line if report.command is None else self._record(report)
@@ -230,11 +179,7 @@ class Session:
         return self.robot.finished
 
     def end(self, limit: TimeLimit | None = None, within: bool = False) -> Result:
-        """Compare the verdict with the truth, write the result and return it.
-
-        limit : the limit of time that ends the run before the robot has a verdict; None when the robot has one.
-        within : whether it cut off a step, which does not count.
-        """
+        """Compare the verdict with the truth, write the result and return it."""
         verdict: VerdictProtocol = self.robot.verdict if limit is None else self._verdict_of(limit, within)
         expected = self.scenario.expectations or ()
         if not self._track:  # the robot did not wake in time
@@ -252,10 +197,7 @@ class Session:
         return result
 
     def run(self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None) -> Result:
-        """Run from waking to the end, and return the result.
-
-        watch : called with this session after every step. limit : the time that the run may take, waking included.
-        """
+        """Run from waking to the end, and return the result."""
         if limit is not None:
             limit.begin()
         try:
@@ -268,11 +210,7 @@ class Session:
     def go_on(
         self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None
     ) -> Result:
-        """Run from the present step to the end, and return the result.
-
-        watch : called with this session after every step. limit : the time that the run may take from now on. Steps
-        that the episode held before, when it is resumed, do not count.
-        """
+        """Run from the present step to the end, and return the result."""
         if limit is not None:
             limit.begin()
         return self._to_the_end(watch, limit)
@@ -303,12 +241,8 @@ class Session:
         return _LimitVerdict(f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}")
 
     def fork(self) -> "Session":
-        """Return a copy of this run that goes on by itself and writes no episode; this run is not changed.
-
-        The copy is at the same step and, left alone, does what this run does, byte for byte: world, robot and random
-        numbers are copied. It takes some milliseconds. Raises TypeError or another exception of `copy.deepcopy` when
-        the robot cannot be copied.
-        """
+        """Return a copy of this run that goes on by itself and writes no episode; this run is not changed."""
+        # Raises TypeError or another exception of `copy.deepcopy` when the robot cannot be copied.
         nothing = EpisodeLog(None)
         return deepcopy(self, {id(self._log): nothing, id(self.scenario): self.scenario, id(nothing): nothing})
 

@@ -73,22 +73,7 @@ class Story(Protocol):
 
 
 def open_story(path: Path | str, settings: Settings) -> LiveStory | RecordedStory:
-    """Return the story of a scenario folder, which is run, or of an episode file, at step 0.
-
-    Parameters
-    ----------
-    path : a scenario folder or an episode.
-    settings : the options of the run; of an episode only its rule files are used.
-
-    Returns
-    -------
-    The story.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    BadInputError : a file has errors.
-    """
+    """Return the story of a scenario folder, which is run, or of an episode file, at step 0."""
     if Path(path).is_dir():
         return LiveStory(read_scenario(path), settings)
     return RecordedStory(str(path), read_begun_episode(path), settings.kb_files)

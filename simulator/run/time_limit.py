@@ -16,17 +16,7 @@ class TimeOver(BaseException):
 
 
 class TimeLimit:
-    """The time that a run may take.
-
-    Parameters
-    ----------
-    seconds : the limit, in seconds of wall-clock time.
-    clock : returns seconds that have passed since whenever. Steps are cut off by the default one alone.
-
-    Attributes
-    ----------
-    seconds : as given.
-    """
+    """The time that a run may take."""
 
     def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
         self.seconds, self._clock = seconds, clock
@@ -43,10 +33,7 @@ class TimeLimit:
 
     @contextmanager
     def cutting(self) -> Iterator[None]:
-        """Raise TimeOver in a `with` block as soon as the time is over.
-
-        Not outside of the main thread, and not where the system knows no such alarms.
-        """
+        """Raise TimeOver in a `with` block as soon as the time is over."""
         if self._clock is not time.monotonic:
             yield
             return

@@ -23,28 +23,16 @@ NO_PLAN = TrialPlan({}, (), {})  # what holds without trial.lp
 
 
 class ScenarioTrial(NamedTuple):
-    """The outcome of a scenario's test.
+    """The outcome of a scenario's test."""
 
-    Attributes
-    ----------
-    passed : whether the test passed.
-    message : the reasons, and the verdict.
-    result : the end of the run.
-    settings : the options of the run.
-    faults : the reasons why it failed, in words; () when it passed.
-    outcomes : what came of each expectation and each question, with their points.
-    weighed : whether the scenario's author weighed them.
-    last_steps : the last lines of the episode: at most `LAST_STEPS` of them, without step 0.
-    """
-
-    passed: bool
-    message: str
-    result: Result
-    settings: Settings
-    faults: tuple[str, ...]
-    outcomes: tuple[ExpectationOutcome, ...]
-    weighed: bool
-    last_steps: tuple[EpisodeLine, ...]
+    passed: bool  # whether the test passed
+    message: str  # the reasons, and the verdict
+    result: Result  # the end of the run
+    settings: Settings  # the options of the run
+    faults: tuple[str, ...]  # the reasons why it failed, in words; () when it passed
+    outcomes: tuple[ExpectationOutcome, ...]  # what came of each expectation and each question, with their points
+    weighed: bool  # whether the scenario's author weighed them
+    last_steps: tuple[EpisodeLine, ...]  # the last lines of the episode: at most `LAST_STEPS` of them, without step 0
 
     @property
     def score(self) -> PointScore:
@@ -58,28 +46,10 @@ def run_trial(
     kb_files: Sequence[str] = (),
     make: RobotMaker = make_robot,
 ) -> ScenarioTrial:
-    """Run a scenario and judge the end by its expect.lp and trial.lp.
-
-    A scenario passes when all that is tested is met, and its end is the one expected: with `fails`, Utak does not
-    believe that the task is done, and gives a reason; with `verdict(V)`, the verdict is V; otherwise Utak believes that
-    the task is done.
-
-    Parameters
-    ----------
-    folder : the scenario.
-    given : fields of `Settings` by name that the user gave; they win over those of trial.lp.
-    kb_files : files of rules, in addition to those of trial.lp.
-    make : makes the robot.
-
-    Returns
-    -------
-    The outcome.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read.
-    BadInputError : a file has errors, or there is no expect.lp.
-    """
+    """Run a scenario and judge the end by its expect.lp and trial.lp."""
+    # A scenario passes when all that is tested is met, and its end is the one expected: with `fails`, Utak does not
+    # believe that the task is done, and gives a reason; with `verdict(V)`, the verdict is V; otherwise Utak believes
+    # that the task is done.
     scenario, plan = _read(Path(folder))
     rules = kb_files_named([*kb_files, *plan.rules])
     settings = replace(Settings(kb_files=rules), **{**plan.options, **(given or {})})
@@ -101,26 +71,15 @@ def run_trial(
 
 
 class PromisedPoints(NamedTuple):
-    """The points of a scenario that could not be run.
+    """The points of a scenario that could not be run."""
 
-    Attributes
-    ----------
-    score : none earned, of those that its files promise.
-    weighed : whether the scenario's author weighed them.
-    """
-
-    score: PointScore
-    weighed: bool
+    score: PointScore  # none earned, of those that its files promise
+    weighed: bool  # whether the scenario's author weighed them
 
 
 def promised_points(folder: Path | str, root: Path | str | None = None) -> PromisedPoints | None:
-    """Return the points that expect.lp and trial.lp of a scenario promise; None where these cannot be read.
-
-    So what a scenario is worth does not depend on whether the other files can be read, such as those of a pupil.
-
-    folder : the scenario. root : the folder in which it was found, where links out of it are not followed; None to
-    follow them.
-    """
+    """Return the points that expect.lp and trial.lp of a scenario promise; None where these cannot be read."""
+    # None to follow them.
     expect, trial = Path(folder) / "expect.lp", Path(folder) / TRIAL_FILE
     try:
         for file in (expect, trial) if root is not None else ():
@@ -193,20 +152,7 @@ def faults_of(result: Result, outcomes: Sequence[ExpectationOutcome], verdict_ex
 
 
 def scenarios_in(folder: Path | str) -> list[Path]:
-    """Return the scenarios in a folder and below it: all folders with an expect.lp, in the order of their names.
-
-    Parameters
-    ----------
-    folder : the folder; a scenario without expect.lp is returned itself.
-
-    Returns
-    -------
-    The folders.
-
-    Raises
-    ------
-    CannotOpenError : there is no such folder, or no scenario in it.
-    """
+    """Return the scenarios in a folder and below it: all folders with an expect.lp, in the order of their names."""
     folder = Path(folder)
     if not folder.is_dir():
         raise CannotOpenError(str(folder), "no such folder")

@@ -25,12 +25,7 @@ PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometr
 
 
 class KernelCompiler:
-    """The compiler of an installation: it finds the uses that are not compiled yet, and compiles them.
-
-    Attributes
-    ----------
-    packages : the folders of the packages whose bytecode is kept.
-    """
+    """The compiler of an installation: it finds the uses that are not compiled yet, and compiles them."""
 
     def __init__(self, packages: Sequence[Path] = PACKAGES) -> None:
         self.packages = packages
@@ -76,11 +71,7 @@ class KernelCompiler:
                 raise
 
     def compile_modules(self) -> None:
-        """Write the bytecode of our modules next to their sources.
-
-        With PYTHONDONTWRITEBYTECODE, as in many containers, Python compiles a checkout again at every start. That takes
-        a third of the time to the first command.
-        """
+        """Write the bytecode of our modules next to their sources."""
         for package in self.packages:
             compileall.compile_dir(package, quiet=2)
 
@@ -89,14 +80,7 @@ THIS_INSTALLATION = KernelCompiler()
 
 
 def warm(carrying: bool, paths: str = "skeleton", compiler: KernelCompiler = THIS_INSTALLATION) -> None:
-    """Compile the kernels that a robot needs, unless they are in the cache; announce it on the standard error.
-
-    Parameters
-    ----------
-    carrying : whether the task moves objects.
-    paths : the path-finder, as in `--paths`.
-    compiler : finds what is missing, announces it and compiles it.
-    """
+    """Compile the kernels that a robot needs, unless they are in the cache; announce it on the standard error."""
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         return
     needed = [search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])]

@@ -19,18 +19,8 @@ from simulator.world.world import World
 
 
 def cautions(folder: Path, scenario: Scenario) -> Iterator[Problem]:
-    """Yield what a scenario hardly means: regions where nothing can be, steps without a next one, hopeless questions.
-
-    Parameters
-    ----------
-    folder : its folder.
-    scenario : what was read from it.
-
-    Raises
-    ------
-    CannotOpenError : a file cannot be read any more.
-    BadInputError : a file of rules that trial.lp names has errors.
-    """
+    """Yield what a scenario hardly means."""
+    # Regions where nothing can be, steps without a next one, hopeless questions.
     goals = scenario.task.goals
     if goals and not any(goal.name == "then" for goal in goals):
         source = read_source(folder / "goal.lp")

@@ -29,37 +29,15 @@ NOT_ABOUT_THE_TRUTH = ("fails", "weight")  # facts of expect.lp that the truth a
 
 
 class Snapshot(NamedTuple):
-    """The true state at one step.
+    """The true state at one step."""
 
-    Attributes
-    ----------
-    step : the number of commands so far.
-    utak : Utak's place (x, y), squares, table frame.
-    polygons : the outlines of the movable things by name, squares, table frame.
-    """
-
-    step: int
-    utak: tuple[float, float]
-    polygons: Mapping[str, Any]
+    step: int  # the number of commands so far
+    utak: tuple[float, float]  # Utak's place (x, y), squares, table frame
+    polygons: Mapping[str, Any]  # the outlines of the movable things by name, squares, table frame
 
 
 def read_expectations(path: Path | str, world: World | None) -> tuple[Fact, ...]:
-    """Return the facts of expect.lp, checked.
-
-    Parameters
-    ----------
-    path : the file.
-    world : the world whose things the facts may name; None to leave names unchecked.
-
-    Returns
-    -------
-    The expected facts.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the file has errors, or expects nothing.
-    """
+    """Return the facts of expect.lp, checked."""
     source = read_source(path)
     facts = parse_facts(source)
     problems = check_facts(source, facts, EXPECTATION_VOCABULARY)
@@ -116,10 +94,7 @@ def _bad_weights(source: Source, facts: Sequence[Fact], asked: bool) -> Iterator
 
 
 def weights_of(facts: Sequence[Fact]) -> dict[Fact, int]:
-    """Return the points of each tested expectation of expect.lp, in the order of the file; 1 without a `weight`.
-
-    Where `fails` is expected, only it, `verdict(V)` and expectations with a weight of their own are tested.
-    """
+    """Return the points of each tested expectation of expect.lp, in the order of the file; 1 without a `weight`."""
     stated = {fact.args[0]: number_of(fact) for fact in facts if fact.name == "weight"}
     failing = should_fail(facts)
     return {
@@ -165,38 +140,14 @@ def expects_verdict(expectations: Sequence[Fact]) -> bool:
 def unmet(
     expectations: Sequence[Fact], world: World, track: Sequence[Snapshot], verdict: str | None = None
 ) -> list[Fact]:
-    """Return the expectations that the truth does not meet.
-
-    Parameters
-    ----------
-    expectations : the facts of expect.lp; `fails` is not tested here.
-    world : the world at the start.
-    track : one snapshot a step, from step 0 on.
-    verdict : the robot's verdict; None when there is none yet, and none is tested.
-
-    Returns
-    -------
-    The unmet facts in their order; [] when all are met.
-    """
+    """Return the expectations that the truth does not meet."""
     return list(shortfalls(expectations, world, track, verdict))
 
 
 def shortfalls(
     expectations: Sequence[Fact], world: World, track: Sequence[Snapshot], verdict: str | None = None
 ) -> dict[Fact, str]:
-    """Return the expectations that the truth does not meet, each with what came instead, in words.
-
-    Parameters
-    ----------
-    expectations : the facts of expect.lp; `fails` is not tested here.
-    world : the world at the start.
-    track : one snapshot a step, from step 0 on.
-    verdict : the robot's verdict; None when there is none yet, and none is tested.
-
-    Returns
-    -------
-    What came by unmet fact, in the order of the facts; {} when all are met.
-    """
+    """Return the expectations that the truth does not meet, each with what came instead, in words."""
     fixed = {thing.name: thing.polygon for thing in world.fixed}
     snapshots = [Snapshot(one.step, one.utak, {**fixed, **one.polygons}) for one in track]
     found: dict[Fact, str] = {}
@@ -304,10 +255,7 @@ def winding(track: Sequence[Snapshot], name: str) -> float:
 
 
 def winding_of_step(start: tuple[float, float], end: tuple[float, float], centre: Any) -> float:
-    """Return by how many degrees a straight step winds around a point, counter-clockwise positive: -180 to 180.
-
-    start, end : places, squares, table frame. centre : the point, of shapely.
-    """
+    """Return by how many degrees a straight step winds around a point, counter-clockwise positive: -180 to 180."""
     before, after = (math.atan2(y - centre.y, x - centre.x) for x, y in (start, end))
     return (math.degrees(after - before) + 180.0) % 360.0 - 180.0
 

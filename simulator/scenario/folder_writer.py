@@ -12,19 +12,7 @@ WORLD_FILES = ("world.lp", "world.txt")  # of which a scenario has one
 
 
 def write_folder(folder: Path, files: Mapping[str, str], force: bool = False) -> None:
-    """Write the files of a scenario into a folder.
-
-    Parameters
-    ----------
-    folder : the folder; it is made, with those above it.
-    files : their texts, ASCII, by name.
-    force : whether to write into a folder that is not empty, too. Then the scenario in it is replaced: files that the
-        new one does not have are removed; what is no file of a scenario is left alone.
-
-    Raises
-    ------
-    CannotOpenError : the folder is not empty, or cannot be written.
-    """
+    """Write the files of a scenario into a folder."""
     with whole_folder(folder, force) as part:
         for name, text in files.items():
             (part / name).write_text(text, encoding="ascii", newline="\n")
@@ -35,11 +23,7 @@ def write_folder(folder: Path, files: Mapping[str, str], force: bool = False) ->
 
 @contextmanager
 def whole_folder(folder: Path, force: bool = False) -> Iterator[Path]:
-    """Yield an empty folder whose files are moved into `folder` at the end of the `with` block, if nothing fails in it.
-
-    folder : it is made, with those above it. force : whether it may hold something; files of the same names are
-    replaced. Raises CannotOpenError when it is not empty, or cannot be written; then nothing is left behind.
-    """
+    """Yield an empty folder whose files are moved into `folder` when the `with` block ends without a failure."""
     made: list[Path] = []
     part = folder.with_name(f".{os.getpid()}.part")
     try:
@@ -62,10 +46,7 @@ def whole_folder(folder: Path, force: bool = False) -> Iterator[Path]:
 
 
 def check_folder(folder: Path, force: bool = False) -> None:
-    """Raise CannotOpenError unless files can be written into a folder, as far as can be told; nothing is made.
-
-    force : whether it may hold something.
-    """
+    """Raise CannotOpenError unless files can be written into a folder, as far as can be told; nothing is made."""
     try:
         if not force and os.path.lexists(folder) and any(folder.iterdir()):
             raise CannotOpenError(str(folder), "it is there already, and not empty")

@@ -26,23 +26,7 @@ _Square = tuple[int, int]
 
 
 def read_picture(path: Path | str) -> World:
-    """Return the world that a picture shows.
-
-    An object covers whole squares. An object that encloses floor has a hole, and counts as fixed.
-
-    Parameters
-    ----------
-    path : the file world.txt.
-
-    Returns
-    -------
-    The world.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the picture has errors; carries all of them.
-    """
+    """Return the world that a picture shows."""
     source = read_source(path)
     rows = [line.rstrip() for line in source.lines]
     while rows and not rows[-1]:
@@ -151,11 +135,7 @@ def _ring_corners(ring: Any) -> npt.NDArray[np.float64]:
 
 
 def labelled(rows: Sequence[str], west: float, south: float, unit: float = 1.0) -> Iterator[str]:
-    """Yield the lines of a picture with labels on the left, the north row first, and an axis with labels below.
-
-    rows : the lines from the south. west, south : the labels of the first column and row. unit : what labels grow by
-    from one to the next.
-    """
+    """Yield the lines of a picture with labels on the left, the north row first, and an axis with labels below."""
     for row in reversed(range(len(rows))):
         label = f"{south + unit * row:6.10g} " if row % LABEL_EVERY == 0 else ""
         yield f"{label[:7]:7}{rows[row]}".rstrip()
@@ -170,10 +150,7 @@ def labelled(rows: Sequence[str], west: float, south: float, unit: float = 1.0) 
 def names_and_places(
     world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None
 ) -> Iterator[str]:
-    """Yield a line about each thing and about Utak: the name, the colour and the squares between which it lies.
-
-    polygons, utak : as for `draw`.
-    """
+    """Yield a line about each thing and about Utak: the name, the colour and the squares between which it lies."""
     x, y = utak or world.utak
     facing = "" if utak else f", facing {world.heading} degrees from the table's north" if world.heading else ""
     yield f"{UTAK_MARK} utak: POINT ({x:.10g} {y:.10g}){facing}"
@@ -185,18 +162,7 @@ def names_and_places(
 
 
 def draw(world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None) -> str:
-    """Return a world as a picture, one line a row, the north row first.
-
-    Parameters
-    ----------
-    world : the world.
-    polygons : the current outlines of movable things by name; by default those at the start.
-    utak : Utak's current place (x, y), squares, table frame; by default that at the start.
-
-    Returns
-    -------
-    The picture; every line has a line end.
-    """
+    """Return a world as a picture, one line a row, the north row first."""
     now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
     rows = [[FLOOR_MARK] * world.width for _ in range(world.height)]
     layers = [(VERGE_COLOUR, world.verge), *((thing.colour, thing.polygon) for thing in world.fixed)]

@@ -8,18 +8,11 @@ from simulator.scenario.expectation import weights_of
 
 
 class ExpectationOutcome(NamedTuple):
-    """One expectation and what came of it.
+    """One expectation and what came of it."""
 
-    Attributes
-    ----------
-    expected : the fact as text.
-    came : what came instead, in words; '' when the expectation is met.
-    points : the points that it is worth.
-    """
-
-    expected: str
-    came: str
-    points: int
+    expected: str  # the fact as text
+    came: str  # what came instead, in words; '' when the expectation is met
+    points: int  # the points that it is worth
 
     @property
     def met(self) -> bool:
@@ -33,16 +26,10 @@ class ExpectationOutcome(NamedTuple):
 
 
 class PointScore(NamedTuple):
-    """Points: those earned and those that could be.
+    """Points: those earned and those that could be."""
 
-    Attributes
-    ----------
-    earned : the points of the expectations that are met.
-    possible : the points of all expectations.
-    """
-
-    earned: int
-    possible: int
+    earned: int  # the points of the expectations that are met
+    possible: int  # the points of all expectations
 
     def __str__(self) -> str:
         """Return the points in words."""
@@ -52,19 +39,7 @@ class PointScore(NamedTuple):
 def judge_expectations(
     expectations: Sequence[Fact], missed: Mapping[Fact, str], believed: bool, reason: str
 ) -> tuple[ExpectationOutcome, ...]:
-    """Return the outcome of each tested expectation of expect.lp, in the order of the file.
-
-    Parameters
-    ----------
-    expectations : the facts of expect.lp.
-    missed : what came instead of each unmet expectation; `fails` is judged here.
-    believed : whether the robot believes that the task is done.
-    reason : the reason of its verdict.
-
-    Returns
-    -------
-    The outcomes. Where `fails` is expected, only it, `verdict(V)` and expectations with a weight are tested.
-    """
+    """Return the outcome of each tested expectation of expect.lp, in the order of the file."""
     told = dict(missed)
     for fact in expectations:
         if fact.name == "fails" and believed:

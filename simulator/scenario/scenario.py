@@ -18,36 +18,15 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class Scenario:
-    """A scenario that was read and checked.
+    """A scenario that was read and checked."""
 
-    Attributes
-    ----------
-    world : the true world.
-    task : the task.
-    expectations : the facts of expect.lp; None without that file.
-    """
-
-    world: World
-    task: Task
-    expectations: tuple[Fact, ...] | None
+    world: World  # the true world
+    task: Task  # the task
+    expectations: tuple[Fact, ...] | None  # the facts of expect.lp; None without that file.
 
 
 def read_scenario(folder: Path | str) -> Scenario:
-    """Return the scenario in a folder.
-
-    Parameters
-    ----------
-    folder : the folder.
-
-    Returns
-    -------
-    The scenario.
-
-    Raises
-    ------
-    CannotOpenError : the folder or a file in it cannot be read.
-    BadInputError : files have errors; carries those of all files.
-    """
+    """Return the scenario in a folder."""
     folder = Path(folder)
     _must_be_folder(folder)
     problems: list[Problem] = []
@@ -61,21 +40,7 @@ def read_scenario(folder: Path | str) -> Scenario:
 
 
 def read_any_world(folder: Path | str) -> World:
-    """Return the world of a scenario folder, from world.lp or from the picture world.txt.
-
-    Parameters
-    ----------
-    folder : the scenario folder.
-
-    Returns
-    -------
-    The world.
-
-    Raises
-    ------
-    CannotOpenError : the folder has no world, or its file cannot be read.
-    BadInputError : the world has errors, or there are two.
-    """
+    """Return the world of a scenario folder, from world.lp or from the picture world.txt."""
     folder = Path(folder)
     _must_be_folder(folder)
     facts, picture = folder / "world.lp", folder / "world.txt"

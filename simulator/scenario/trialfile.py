@@ -33,18 +33,11 @@ ANSWER_HINT = f"one of {', '.join(PLAIN_ANSWERS)}, rows(N) or row(VALUE, ...)"
 
 
 class TrialPlan(NamedTuple):
-    """The plan of a trial, as trial.lp states it.
+    """The plan of a trial, as trial.lp states it."""
 
-    Attributes
-    ----------
-    options : fields of `Settings` by name, as far as the file states them, without `kb_files`.
-    rules : the paths of the files of rules.
-    asks : the facts asks(QUERY, ANSWER), each with its points, in the order of the file.
-    """
-
-    options: Mapping[str, Any]
-    rules: tuple[str, ...]
-    asks: Mapping[Fact, int]
+    options: Mapping[str, Any]  # fields of `Settings` by name, as far as the file states them, without `kb_files`
+    rules: tuple[str, ...]  # the paths of the files of rules
+    asks: Mapping[Fact, int]  # the facts asks(QUERY, ANSWER), each with its points, in the order of the file
 
 
 def _check_answer(term: Term) -> Complaint | None:
@@ -93,21 +86,7 @@ OPTION_PREDICATES = ("seed", "noise", "paths", "max_steps", "no_pull")  # each m
 
 
 def read_trial_plan(path: Path | str) -> TrialPlan:
-    """Return what trial.lp says, checked.
-
-    Parameters
-    ----------
-    path : the file.
-
-    Returns
-    -------
-    The options, the files of rules beside it, and the questions with their points.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : the file has errors.
-    """
+    """Return what trial.lp says, checked."""
     source = read_source(path)
     facts = parse_facts(source)
     problems = check_facts(source, facts, TRIAL_VOCABULARY) or list(_contradictions(source, facts))
@@ -154,15 +133,7 @@ def query_of(asked: Fact) -> str:
 
 
 def answers_as_wanted(asked: Fact, kind: str, rows: Sequence[Sequence[int | str]], more: bool) -> str:
-    """Return '' when an answer is the one that asks(QUERY, ANSWER) wants, else the answer in words.
-
-    Parameters
-    ----------
-    asked : the fact.
-    kind : "bindings", "yes", "no" or "don't know".
-    rows : the rows of the answer: integers, and terms as text.
-    more : whether there are more rows than these.
-    """
+    """Return '' when an answer is the one that asks(QUERY, ANSWER) wants, else the answer in words."""
     wanted = asked.args[1]
     assert isinstance(wanted, Symbol)
     if wanted.name == "rows":

@@ -16,26 +16,13 @@ def add_untrusted_option(part: argparse.ArgumentParser) -> None:
 
 
 def refuse_links(options: argparse.Namespace, place: Path | str, root: Path | str | None = None) -> None:
-    """Raise CannotOpenError when `--untrusted` is given and a link leads out of the scenario's folder.
-
-    Parameters
-    ----------
-    options : the parsed command line.
-    place : a scenario folder, or a file in one.
-    root : the folder in which the scenario was found; None when the user named the scenario itself.
-    """
+    """Raise CannotOpenError when `--untrusted` is given and a link leads out of the scenario's folder."""
     if options.untrusted:
         refuse_outside_links(place, root)
 
 
 def refuse_outside_links(place: Path | str, root: Path | str | None = None) -> None:
-    """Raise CannotOpenError when a link leads out of the scenario's folder.
-
-    Parameters
-    ----------
-    place : a scenario folder, or a file in one. Files of rules beside the scenario's own files are looked at, too.
-    root : the folder in which the scenario was found; None when the user named the scenario itself.
-    """
+    """Raise CannotOpenError when a link leads out of the scenario's folder."""
     place = Path(place)
     files = [place / name for name in SCENARIO_FILES] if place.is_dir() else [place]
     if place.is_dir():

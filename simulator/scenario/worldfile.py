@@ -32,21 +32,7 @@ class _Stated(NamedTuple):
 
 
 def read_world(path: Path | str) -> World:
-    """Return the world that world.lp states.
-
-    Parameters
-    ----------
-    path : the file.
-
-    Returns
-    -------
-    The world.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read.
-    BadInputError : syntax, vocabulary or geometry have errors; carries all of them.
-    """
+    """Return the world that world.lp states."""
     source = read_source(path)
     facts = parse_facts(source)
     problems = check_facts(source, facts, WORLD_VOCABULARY) or list(_counts(source, facts))
@@ -198,20 +184,8 @@ def _bad_place(
 
 
 def touches_floor(here: Any, shapes: Sequence[Any], width: int, height: int) -> bool:
-    """Return whether a point lies on the floor or on its edge; gaps narrower than `MIN_GAP_WIDTH` are no floor.
-
-    Only shapes within one square of the point are examined, so that the test is fast on a large table.
-
-    Parameters
-    ----------
-    here : shapely Point, squares, table frame.
-    shapes : the outlines of the verge and of all things.
-    width, height : the size of the table, in squares.
-
-    Returns
-    -------
-    Whether floor is within `MAX_DISTANCE_TO_FLOOR` of the point.
-    """
+    """Return whether a point lies on the floor or on its edge; gaps narrower than `MIN_GAP_WIDTH` are no floor."""
+    # Only shapes within one square of the point are examined, so that the test is fast on a large table.
     about = shapely.box(0, 0, width, height).intersection(shapely.box(*here.buffer(1.0).bounds))
     floor = about.difference(shapely.union_all([shape.intersection(about) for shape in shapes]))
     wide = floor.buffer(-MIN_GAP_WIDTH / 2, join_style="mitre")

@@ -19,15 +19,7 @@ def form_of(plan: SweepPlan) -> RowForm:
 
 
 def carry_out_sweep(plan: SweepPlan, results: ResultsProtocol, executor: Executor, watch: Watch) -> None:
-    """Carry out those runs of a plan that the results do not have yet, and append each as it ends.
-
-    Parameters
-    ----------
-    plan : the plan.
-    results : where rows go.
-    executor : carries out the runs.
-    watch : called after each run with the run and its outcome.
-    """
+    """Carry out those runs of a plan that the results do not have yet, and append each as it ends."""
     judged = {one.name: any(name == EXPECTATIONS_FILE for name, _ in one.files) for one in plan.scenarios}
     missing = [run for run in plan.runs if run not in results.known]
     with closing(executor([plan.task(run) for run in missing])) as ended:
@@ -38,10 +30,7 @@ def carry_out_sweep(plan: SweepPlan, results: ResultsProtocol, executor: Executo
 
 
 def row_of(run: SweepRun, outcome: TaskOutcome, judged: bool) -> ResultRow:
-    """Return the row of a run: the same for the same run, wherever and however fast it was carried out.
-
-    judged : whether the scenario has an expect.lp. Then a run that failed has not passed.
-    """
+    """Return the row of a run: the same for the same run, wherever and however fast it was carried out."""
     value: dict[str, Any] = outcome.value or {"result": None, "passed": False if judged else None}
     failed = {"how": outcome.failure, "reason": outcome.reason} if outcome.failure else None
     return {"scenario": run.scenario, "seed": run.seed, "noise": run.noise, **value, "failed": failed}

@@ -15,16 +15,10 @@ RUN_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", EXPECTATIONS_FILE)
 
 
 class ScenarioContents(NamedTuple):
-    """The files of a scenario.
+    """The files of a scenario."""
 
-    Attributes
-    ----------
-    name : the scenario's name within a sweep.
-    files : (file name, text) of each file that there is.
-    """
-
-    name: str
-    files: tuple[tuple[str, str], ...]
+    name: str  # the scenario's name within a sweep
+    files: tuple[tuple[str, str], ...]  # (file name, text) of each file that there is
 
     @property
     def digest(self) -> str:
@@ -36,18 +30,14 @@ class ScenarioContents(NamedTuple):
 
 
 def read_contents(folder: Path, name: str) -> ScenarioContents:
-    """Return the files of a scenario folder.
-
-    Raises CannotOpenError when a file cannot be read, BadInputError when it is no ASCII text.
-    """
+    """Return the files of a scenario folder."""
+    # Raises CannotOpenError when a file cannot be read, BadInputError when it is no ASCII text.
     found = [(file, read_source(folder / file).text) for file in RUN_FILES if (folder / file).exists()]
     return ScenarioContents(name, tuple(found))
 
 
 def names_of(folders: Sequence[Path]) -> list[str]:
     """Return a name for each folder: as many of the last parts of its path as distinguish it from the others.
-
-    So results do not depend on the place of the scenarios.
 
     >>> names_of([Path("/a/x"), Path("/a/y"), Path("/b/y")])
     ['x', 'a/y', 'b/y']
@@ -64,10 +54,7 @@ def names_of(folders: Sequence[Path]) -> list[str]:
 
 @contextmanager
 def written(files: Sequence[Sequence[str]]) -> Iterator[Path]:
-    """Write files into a temporary folder, and yield the folder; it is removed at the end of the `with` block.
-
-    files : (file name, text) of each.
-    """
+    """Write files into a temporary folder, and yield the folder; it is removed at the end of the `with` block."""
     with TemporaryDirectory(prefix="utak-sweep-", ignore_cleanup_errors=True) as made:
         for name, text in files:
             # Surrogate escapes stand for bytes that are not UTF-8; newline="" keeps line ends as they are.

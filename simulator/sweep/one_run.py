@@ -17,33 +17,14 @@ from simulator.sweep.contents import written
 
 
 def prepare(argument: dict[str, Any]) -> None:
-    """Compile the geometry kernels and load the robot, so that no run waits for them.
-
-    argument : `carrying`, whether tasks move objects, and `paths`, the path-finder.
-    """
+    """Compile the geometry kernels and load the robot, so that no run waits for them."""
     from planner.cycle import Robot  # noqa: F401 (loading it takes time)
 
     warm(argument["carrying"], argument["paths"])
 
 
 def run_one(argument: dict[str, Any], make: RobotMaker = make_robot) -> dict[str, Any]:
-    """Run the robot once and return the result.
-
-    Parameters
-    ----------
-    argument : `files` and `rules`, lists of [name, text]; `seed`, `noise`, `paths`, `max_steps` and `pull` as in
-        `Settings`.
-    make : makes the robot.
-
-    Returns
-    -------
-    `result`: believed, achieved, verdict, reason, steps and unmet; `passed`: whether expect.lp is met as `utak test`
-    wants it, None without expect.lp.
-
-    Raises
-    ------
-    CannotOpenError, BadInputError : a file is damaged; names in messages are those of the files alone.
-    """
+    """Run the robot once and return the result."""
     rules = [(f"rules{number}-{Path(name).name}", text) for number, (name, text) in enumerate(argument["rules"])]
     with written([*argument["files"], *rules]) as folder:
         try:

@@ -26,11 +26,7 @@ Scale = Callable[[float], float]  # a value to pixels from the left
 
 
 def sweep_picture(counts: Sequence[SweepCount]) -> str:
-    """Return an SVG document, as text, that shows the counts of a sweep on a white ground.
-
-    The left panel has success rates with their Wilson intervals, the right one the median number of commands with a bar
-    to the 95th percentile. Colour and shape of a mark tell the noise.
-    """
+    """Return an SVG document, as text, that shows the counts of a sweep on a white ground."""
     scenarios = list(dict.fromkeys(count.scenario for count in counts))
     noises = list(dict.fromkeys(count.noise for count in counts if count.noise is not None))
     name_width = CHARACTER_WIDTH * max((len(_short_name(name)) for name in scenarios), default=0)

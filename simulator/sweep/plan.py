@@ -28,24 +28,15 @@ class SweepRun(NamedTuple):
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """A sweep: every scenario with every noise and every seed.
+    """A sweep: every scenario with every noise and every seed."""
 
-    Attributes
-    ----------
-    scenarios : their contents; the names differ.
-    seeds : half-open ranges (first, end) of seeds, in order; no seed is in two of them.
-    noises : the noises, each once.
-    settings : the other options of the runs; seed, noise and files of rules in it have no meaning.
-    rules : (name, text) of each file of users' rules.
-    seconds : the limit of wall-clock time of a run; None for no limit.
-    """
-
-    scenarios: tuple[ScenarioContents, ...]
-    seeds: tuple[tuple[int, int], ...]
-    noises: tuple[float, ...]
+    scenarios: tuple[ScenarioContents, ...]  # their contents; the names differ
+    seeds: tuple[tuple[int, int], ...]  # half-open ranges (first, end) of seeds, in order; no seed is in two of them
+    noises: tuple[float, ...]  # the noises, each once
+    # The other options of the runs; seed, noise and files of rules in it have no meaning
     settings: Settings = field(default_factory=Settings)
-    rules: tuple[tuple[str, str], ...] = ()
-    seconds: float | None = None
+    rules: tuple[tuple[str, str], ...] = ()  # (name, text) of each file of users' rules
+    seconds: float | None = None  # the limit of wall-clock time of a run; None for no limit
 
     @property
     def size(self) -> int:
@@ -110,11 +101,10 @@ def written_seeds(ranges: tuple[tuple[int, int], ...]) -> str:
 def parse_seeds(text: str) -> tuple[tuple[int, int], ...]:
     """Return the ranges of seeds that a text denotes: `A:B` for A to B - 1, `A` for A alone, with commas between.
 
-    Ranges that follow each other are joined. Raises ValueError, with a message for users, for any other text.
-
     >>> parse_seeds("0:10,12,10")
     ((0, 10), (12, 13), (10, 11))
     """
+    # Raises ValueError, with a message for users, for any other text.
     ranges: list[tuple[int, int]] = []
     for part in text.split(","):
         first, end = _range(part)

@@ -28,20 +28,13 @@ RowKey = tuple[Any, ...]  # the values that tell which run a row is of
 
 
 class RowForm(NamedTuple):
-    """The form of a file of results.
+    """The form of a file of results."""
 
-    Attributes
-    ----------
-    header : the first line; its key `utak` names the kind of file. None for no header, and then no file is resumed.
-    names : the names of the values in a row that are its key.
-    keys : the keys of all rows, in order.
-    check : returns what is wrong with a row, "" for nothing.
-    """
-
+    # The first line; its key `utak` names the kind of file. None for no header, and then no file is resumed.
     header: dict[str, Any] | None
-    names: tuple[str, ...]
-    keys: Sequence[RowKey]
-    check: Callable[[ResultRow], str] = lambda row: ""
+    names: tuple[str, ...]  # the names of the values in a row that are its key
+    keys: Sequence[RowKey]  # the keys of all rows, in order
+    check: Callable[[ResultRow], str] = lambda row: ""  # returns what is wrong with a row, "" for nothing
 
     def key_of(self, row: ResultRow) -> RowKey:
         """Return the key of a row."""
@@ -68,23 +61,7 @@ def encode_row(row: ResultRow) -> bytes:
 
 
 def open_results(path: Path | str | None, form: RowForm, force: bool = False) -> "ResultsProtocol":
-    """Return where results go: a file, which may hold some of them already, or the standard output.
-
-    Parameters
-    ----------
-    path : the file; `-` for the standard output, None to keep nothing. A file without header is overwritten.
-    form : the form of the file.
-    force : whether to begin anew, whatever the file holds.
-
-    Returns
-    -------
-    The file, with the rows that it holds already.
-
-    Raises
-    ------
-    CannotOpenError : the file cannot be read or written, is of another kind, or another process writes to it.
-    BadInputError : it holds results of something else, or is damaged.
-    """
+    """Return where results go: a file, which may hold some of them already, or the standard output."""
     if path is None:
         return PassingResults(form, None)
     if path == STDOUT_NAME:
@@ -121,16 +98,7 @@ def holds_rows(head: bytes, names: Sequence[str]) -> bool:
 
 
 class ResultsFile:
-    """A file of results that this process alone writes to.
-
-    Parameters
-    ----------
-    path : its name.
-    stream : it, open for reading and writing, and locked.
-    form : its form.
-    header : its first line.
-    force : whether to begin anew, whatever it holds.
-    """
+    """A file of results that this process alone writes to."""
 
     def __init__(self, path: Path, stream: BinaryIO, form: RowForm, header: ResultRow, force: bool) -> None:
         self._path, self._stream, self._form, self._header = path, stream, form, header
@@ -151,10 +119,8 @@ class ResultsFile:
         self.known[self._form.key_of(row)] = row
 
     def finish(self) -> None:
-        """Put the rows into the order of the plan and close the file. It is replaced whole, or not at all.
-
-        Raises CannotOpenError when it cannot be replaced; the rows are kept then.
-        """
+        """Put the rows into the order of the plan and close the file. It is replaced whole, or not at all."""
+        # Raises CannotOpenError when it cannot be replaced; the rows are kept then.
         with self._stream:
             ordered = [key for key in self._form.keys if key in self.known]
             if ordered == list(self.known):
@@ -192,13 +158,7 @@ class ResultsFile:
 
 
 class PassingResults:
-    """Results that go to a stream in the order of the plan, each as soon as those before it are there.
-
-    Parameters
-    ----------
-    form : their form.
-    stream : a text or binary stream; None to keep nothing.
-    """
+    """Results that go to a stream in the order of the plan, each as soon as those before it are there."""
 
     def __init__(self, form: RowForm, stream: Any) -> None:
         self._form, self._stream = form, stream
@@ -233,10 +193,8 @@ class PassingResults:
 
 
 def complete_result_lines(path: Path | str) -> list[bytes]:
-    """Return the lines of a file with their line ends; a last line without a line end is left out.
-
-    Raises CannotOpenError when the file cannot be read or is too large.
-    """
+    """Return the lines of a file with their line ends; a last line without a line end is left out."""
+    # Raises CannotOpenError when the file cannot be read or is too large.
     whole = read_bytes(str(path), MAX_RESULTS_BYTES)
     if len(whole) > MAX_RESULTS_BYTES:
         raise CannotOpenError(str(path), f"it is larger than {MAX_RESULTS_BYTES} bytes")

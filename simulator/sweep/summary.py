@@ -18,18 +18,11 @@ MAX_LISTED_RUNS = 10  # of each kind, below the table; a convention
 
 @dataclass(frozen=True)
 class SweepCount:
-    """Counts what came out of the runs of one scenario at one noise, or of several.
+    """Counts what came out of the runs of one scenario at one noise, or of several."""
 
-    Attributes
-    ----------
-    scenario : the name; "all" for all scenarios.
-    noise : the noise; None for all noises.
-    rows : the rows of the results.
-    """
-
-    scenario: str
-    noise: float | None
-    rows: tuple[ResultRow, ...]
+    scenario: str  # the name; "all" for all scenarios
+    noise: float | None  # the noise; None for all noises
+    rows: tuple[ResultRow, ...]  # the rows of the results
 
     @property
     def runs(self) -> int:
@@ -109,15 +102,6 @@ class SweepCount:
 
 def wilson_interval(successes: int, trials: int, level: float = CONFIDENCE_LEVEL) -> tuple[float, float]:
     """Return the Wilson score interval of a rate: its lower and upper end, 0 to 1.
-
-    Parameters
-    ----------
-    successes, trials : the numbers; at least one trial.
-    level : the confidence level, such as 0.95.
-
-    Returns
-    -------
-    The ends. E. B. Wilson, Probable inference, the law of succession, and statistical inference, JASA 22, 1927.
 
     Examples
     --------

@@ -13,19 +13,7 @@ _Parameters = ParamSpec("_Parameters")
 
 
 def attempt(do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _Parameters.kwargs) -> int:
-    """Call a function and return its exit code; report an error on the standard error and return the code for it.
-
-    A failing output stream and Ctrl-C are raised. With UTAK_DEBUG set, unexpected exceptions are raised, too.
-
-    Parameters
-    ----------
-    do : the function; returns an exit code.
-    args, kwargs : its arguments.
-
-    Returns
-    -------
-    The exit code.
-    """
+    """Call a function and return its exit code; report an error on the standard error and return the code for it."""
     code, message = outcome_of(do, *args, **kwargs)
     if message:
         print(message, file=sys.stderr)
@@ -35,19 +23,7 @@ def attempt(do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _
 def outcome_of(
     do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _Parameters.kwargs
 ) -> tuple[int, str]:
-    """Call a function and return its exit code with ''; for an error, the code for it and its message.
-
-    A failing output stream and Ctrl-C are raised. With UTAK_DEBUG set, unexpected exceptions are raised, too.
-
-    Parameters
-    ----------
-    do : the function; returns an exit code.
-    args, kwargs : its arguments.
-
-    Returns
-    -------
-    The exit code and the message.
-    """
+    """Call a function and return its exit code with ''; for an error, the code for it and its message."""
     try:
         return do(*args, **kwargs), ""
     except BadInputError as bad:

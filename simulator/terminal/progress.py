@@ -11,17 +11,7 @@ REPORT_SECONDS = 2.0  # between two reports; a convention
 
 
 class Progress:
-    """Reports on a terminal (standard error), at most every few seconds, how many pieces of work are done.
-
-    The time of the rest is estimated from the pieces of the same kind that are done, and from how many were done at
-    once.
-
-    Parameters
-    ----------
-    left : the number of pieces to do of each kind.
-    unit : what a piece is called, in the plural.
-    interval : seconds between two reports.
-    """
+    """Reports on a terminal (standard error), at most every few seconds, how many pieces of work are done."""
 
     def __init__(self, left: Mapping[Hashable, int], unit: str, interval: float = REPORT_SECONDS) -> None:
         self._left, self._unit, self._interval = dict(left), unit, interval
@@ -56,16 +46,7 @@ class Progress:
 
 
 class StepProgress:
-    """Reports on a terminal (standard error) that a step of a run is planned, after 2, 6, 14 ... seconds of it.
-
-    A context manager; nothing is reported outside of its block, before a step begins, or where the standard error is no
-    terminal.
-
-    Parameters
-    ----------
-    most : the number of steps that the run takes at most; None where that is not told.
-    interval : seconds until the first report.
-    """
+    """Reports on a terminal (standard error) that a step of a run is planned, after 2, 6, 14 ... seconds of it."""
 
     def __init__(self, most: int | None = None, interval: float = REPORT_SECONDS) -> None:
         self._most, self._interval = most, interval

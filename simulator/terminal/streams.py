@@ -20,15 +20,6 @@ class StreamError(Exception):
 def escape_controls(text: str, lines: bool = True) -> str:
     r"""Return a text with all characters that control a terminal written as JSON escapes.
 
-    Parameters
-    ----------
-    text : the text.
-    lines : whether to keep line ends. Text from a file that belongs on one line is printed without them.
-
-    Returns
-    -------
-    The text without control characters, direction marks and undecodable bytes.
-
     Examples
     --------
     >>> escape_controls("red \x1b[31m")
@@ -39,20 +30,7 @@ def escape_controls(text: str, lines: bool = True) -> str:
 
 
 class GuardedStream:
-    """A text stream that escapes control characters and reports errors of writing.
-
-    Parameters
-    ----------
-    stream : the stream to write to; None when the process was started without it.
-    name : its name in messages.
-    vital : whether an error raises StreamError. Otherwise the error is kept in `lost`, and writing goes on without
-        effect.
-        When the process was started without a stream that is not vital, nothing is reported.
-
-    Attributes
-    ----------
-    lost : the reason why the stream failed; '' while it works.
-    """
+    """A text stream that escapes control characters and reports errors of writing."""
 
     def __init__(self, stream: Any, name: str, vital: bool) -> None:
         self._stream, self._name, self._vital = stream, name, vital

@@ -19,14 +19,7 @@ class WorkerEndedError(Exception):
 
 
 class WorkerHandle:
-    """A process that tries scenarios, one after the other. It starts with the first wish.
-
-    After a crash, a new process is started for the next wish.
-
-    Parameters
-    ----------
-    folder : the working directory of the process, from which relative names of scenarios lead; None for this one's.
-    """
+    """A process that tries scenarios, one after the other. It starts with the first wish."""
 
     def __init__(self, folder: str | None = None) -> None:
         self._folder = folder
@@ -35,22 +28,7 @@ class WorkerHandle:
         self._closed = False
 
     def ask(self, wish: dict[str, Any]) -> dict[str, Any]:
-        """Return the record of a scenario, and its report as `report`.
-
-        Parameters
-        ----------
-        wish : the fields of `simulator.testing.record.Wish` as JSON values.
-
-        Returns
-        -------
-        The record.
-
-        Raises
-        ------
-        WorkerEndedError : the process ended before it answered.
-
-        An exception while the process works, such as a keyboard interrupt, ends the process.
-        """
+        """Return the record of a scenario, and its report as `report`."""
         if self._process is None:
             self._process = _start(self._folder)
         worker, self._process = self._process, None

@@ -24,31 +24,18 @@ OUTCOME_NAMES = {  # by exit code: the word for the outcome of a scenario
 
 
 class Wish(NamedTuple):
-    """A scenario that is to be tried.
+    """A scenario that is to be tried."""
 
-    Attributes
-    ----------
-    folder : the scenario.
-    root : the folder in which it was found.
-    given : fields of `Settings` by name that the user gave; they win over those of trial.lp.
-    kb_files : files of rules, in addition to those of trial.lp.
-    untrusted : whether links that lead out of the scenario are refused.
-    timed : whether the record says how long it took.
-    """
-
-    folder: str
-    root: str
-    given: Mapping[str, Any]
-    kb_files: tuple[str, ...] = ()
-    untrusted: bool = False
-    timed: bool = False
+    folder: str  # the scenario
+    root: str  # the folder in which it was found
+    given: Mapping[str, Any]  # fields of `Settings` by name that the user gave; they win over those of trial.lp.
+    kb_files: tuple[str, ...] = ()  # files of rules, in addition to those of trial.lp.
+    untrusted: bool = False  # whether links that lead out of the scenario are refused
+    timed: bool = False  # whether the record says how long it took
 
 
 def try_scenario(wish: Wish) -> TrialRecord:
-    """Return the record of a scenario that was tried; errors end up in it.
-
-    A failing output stream and Ctrl-C are raised; with UTAK_DEBUG set, unexpected exceptions, too.
-    """
+    """Return the record of a scenario that was tried; errors end up in it."""
     trials: list[ScenarioTrial] = []
     began = perf_counter()
     code, error = outcome_of(_run, wish, trials)

@@ -16,35 +16,14 @@ from simulator.testing.record import TrialRecord, Wish, broken_off, try_scenario
 
 
 class FoundScenario(NamedTuple):
-    """A scenario folder, and the folder of the command line in which it was found.
+    """A scenario folder, and the folder of the command line in which it was found."""
 
-    Attributes
-    ----------
-    folder : the scenario.
-    root : the folder that the user named.
-    """
-
-    folder: Path
-    root: Path
+    folder: Path  # the scenario
+    root: Path  # the folder that the user named
 
 
 def find_scenarios(folders: Sequence[str], name: str = "") -> tuple[list[FoundScenario], list[TrialRecord]]:
-    """Return the scenarios in some folders, each once, and records of the folders in which there are none.
-
-    Parameters
-    ----------
-    folders : the folders.
-    name : what the names of the chosen scenarios, with the folders that lead to them, contain; letters count alike
-        whether small or capital. '' chooses all.
-
-    Returns
-    -------
-    The chosen scenarios in the order of the folders, and a record of each folder without any scenario, chosen or not.
-
-    Raises
-    ------
-    CannotOpenError : there are scenarios, and none is chosen.
-    """
+    """Return the scenarios in some folders, each once, and records of the folders in which there are none."""
     found: dict[Path, FoundScenario] = {}
     absent = []
 
@@ -64,13 +43,7 @@ def find_scenarios(folders: Sequence[str], name: str = "") -> tuple[list[FoundSc
 
 
 def try_all(wishes: Sequence[Wish], jobs: int = 1) -> Iterator[TrialRecord]:
-    """Yield the record of each wish, in order, each as soon as it and those before it are known.
-
-    Parameters
-    ----------
-    wishes : the scenarios that are to be tried.
-    jobs : the number of processes beside this one that try them; 1 for this process itself.
-    """
+    """Yield the record of each wish, in order, each as soon as it and those before it are known."""
     if jobs <= 1 or len(wishes) <= 1:
         yield from map(try_scenario, wishes)
         return

@@ -22,30 +22,7 @@ TABLE_EDGE_WIDTH = 1.0  # squares; any width above 0 stops motions, because cont
 
 
 class Tabletop:
-    """A world that changes by commands.
-
-    Commands are in Utak's frame: north is the direction that Utak faces on waking, and stays so. A command that cannot
-    act changes nothing. The true motion is in `motion`, which Utak never sees.
-
-    Parameters
-    ----------
-    world : the table at the start.
-    noise : the S of `--noise`, 0 to 1. The length of a motion has a relative standard deviation of S, its direction a
-        standard deviation of S radians, the angle of a turn a relative standard deviation of S. A grasp fails with
-        probability S.
-    seed : the seed of the random generator.
-
-    Attributes
-    ----------
-    utak : the point (x, y) where Utak is, squares, table frame.
-    held : the name of the held object, or None.
-    polygons : the outlines of the movable things by name, squares, table frame.
-    motion : the true motion of the last command, table frame; None when nothing moved.
-
-    Raises
-    ------
-    ValueError : the noise is not from 0 to 1.
-    """
+    """A world that changes by commands."""
 
     def __init__(self, world: World, noise: float = 0.0, seed: int = 0) -> None:
         if not 0.0 <= noise <= 1.0:
@@ -61,10 +38,7 @@ class Tabletop:
         self.restart(seed)
 
     def restart(self, seed: int) -> None:
-        """Put everything back to where it was at the start, and begin randomness anew with a seed.
-
-        The table is then as a new one with the same world and noise; what was prepared for it is kept.
-        """
+        """Put everything back to where it was at the start, and begin randomness anew with a seed."""
         self.utak = self.world.utak
         self.held: str | None = None
         self.polygons: dict[str, Any] = {thing.name: thing.polygon for thing in self.world.movable}
@@ -78,17 +52,7 @@ class Tabletop:
         self._carried: CarriedThing | None = None  # the held thing where it lies now; None until it moves
 
     def disturb(self, noise: float, seed: int | None) -> None:
-        """Disturb motions by another noise from now on.
-
-        Parameters
-        ----------
-        noise : as for the table.
-        seed : the seed of a new random generator; None to go on with the one there is.
-
-        Raises
-        ------
-        ValueError : the noise is not from 0 to 1.
-        """
+        """Disturb motions by another noise from now on."""
         if not 0.0 <= noise <= 1.0:
             raise ValueError(f"noise must be from 0 to 1, not {noise}")
         self.noise = noise
@@ -118,11 +82,7 @@ class Tabletop:
         self._move_until_contact(Rotate(degrees, self.utak))
 
     def grasp(self, direction: str) -> None:
-        """Grasp the movable thing on an adjacent square; no effect while an object is held.
-
-        direction : the square in Utak's frame: "north", "northeast", ... Of several things on it, the first by name is
-        taken.
-        """
+        """Grasp the movable thing on an adjacent square; no effect while an object is held."""
         self.motion = None
         square = self._senses.adjacent(self.utak, direction)
         if self.held is not None:
@@ -143,13 +103,7 @@ class Tabletop:
         return gray_levels(sensed), felt_colours(sensed)
 
     def sense(self, sensed: ImpressionCodes | None = None) -> ImpressionCodes:
-        """Return the impression at Utak's place in numbers: (168,) uint8. Changes nothing.
-
-        sensed : a contiguous array that is filled and returned; a new one is made if None.
-
-        First the 160 gray levels, 0 to 7, then the colours of the 8 adjacent squares, clockwise from north in Utak's
-        frame, as the places of their letters in the alphabet from 1; 0 for floor.
-        """
+        """Return the impression at Utak's place in numbers: (168,) uint8. Changes nothing."""
         return self._senses.impression(self._table, self.utak, sensed)
 
     @property
@@ -215,20 +169,13 @@ class Tabletop:
 
 
 class CarriedThing(NamedTuple):
-    """A held thing where it lies, in the forms that its next motion needs.
+    """A held thing where it lies, in the forms that its next motion needs."""
 
-    Attributes
-    ----------
-    polygon : its outline, shapely Polygon, squares, table frame.
-    outline : (n, 4) its edges, for its projection onto squares.
-    body : itself and Utak as one rigid body.
-    is_made_anew : whether all of them are made anew after each motion, not moved: a polygon has holes, or edges so
-        small that rounding could decide which of them `body` has.
-    """
-
-    polygon: Any
-    outline: Floats
-    body: ContactBody
+    polygon: Any  # its outline, shapely Polygon, squares, table frame
+    outline: Floats  # (n, 4) its edges, for its projection onto squares
+    body: ContactBody  # itself and Utak as one rigid body
+    # Whether all of them are made anew after each motion, not moved: a polygon has holes, or edges so small that
+    # rounding could decide which of them `body` has
     is_made_anew: bool
 
     def after(self, motion: Motion) -> "CarriedThing":

@@ -36,13 +36,7 @@ NEIGHBOUR_OFFSETS = {  # offsets (east, north) of the adjacent squares in Utak's
 
 
 def retina_fields() -> list[tuple[int, int, int]]:
-    """Return the 160 fields of the retina in their order.
-
-    Returns
-    -------
-    For each field: the offsets east and north of its south-west square from Utak's square, and its side, all in
-        squares.
-    """
+    """Return the 160 fields of the retina in their order."""
     fields = []
     inner = 0
     for reach, side in VIEW_ZONES:
@@ -55,12 +49,7 @@ def retina_fields() -> list[tuple[int, int, int]]:
 
 
 class Senses:
-    """Utak's senses for one heading.
-
-    Parameters
-    ----------
-    heading : degrees from the table's north, counter-clockwise positive.
-    """
+    """Utak's senses for one heading."""
 
     def __init__(self, heading: float) -> None:
         cosine, sine = math.cos(math.radians(heading)), math.sin(math.radians(heading))
@@ -85,15 +74,7 @@ class Senses:
     def impression(
         self, table: Table, here: tuple[float, float], sensed: ImpressionCodes | None = None
     ) -> ImpressionCodes:
-        """Return what is sensed at a point (x, y) of the table, as numbers.
-
-        sensed : a contiguous array that is filled and returned; a new one is made if None.
-
-        Returns
-        -------
-        (168,) uint8: the 160 gray levels, 0 to 7, and the colours of the 8 adjacent squares as in
-        `Table.colours`, clockwise from Utak's north.
-        """
+        """Return what is sensed at a point (x, y) of the table, as numbers."""
         if sensed is None:
             sensed = np.empty(SENSED_NUMBERS, np.uint8)
         counts, touched = sensed[:SENSED_FIELDS], sensed[SENSED_FIELDS:]
@@ -108,10 +89,7 @@ class Senses:
         return gray_levels(self.impression(table, here))
 
     def touch(self, table: Table, here: tuple[float, float]) -> tuple[str | None, ...]:
-        """Return the colours of the 8 squares adjacent to the point's square; None for floor.
-
-        The order is clockwise from Utak's north.
-        """
+        """Return the colours of the 8 squares adjacent to the point's square; None for floor."""
         return felt_colours(self.impression(table, here))
 
     def adjacent(self, here: tuple[float, float], direction: str) -> tuple[int, int]:
@@ -131,10 +109,7 @@ def felt_colours(sensed: ImpressionCodes) -> tuple[str | None, ...]:
 
 
 def _fields_of_squares() -> tuple[Longs, Longs]:
-    """Return the index of the field of each of the 32 x 32 squares, and the sides of the fields in squares.
-
-    The squares are in rows from the south.
-    """
+    """Return the index of the field of each of the 32 x 32 squares, and the sides of the fields in squares."""
     fields = retina_fields()
     owner = np.zeros((2 * SENSED_REACH, 2 * SENSED_REACH), dtype=np.int64)
     for number, (east, north, side) in enumerate(fields):

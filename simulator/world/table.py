@@ -20,17 +20,11 @@ COLOUR_OF_CODE: tuple[str | None, ...] = (None, *string.ascii_lowercase)  # the 
 
 
 class Projection(NamedTuple):
-    """The squares that a thing covers.
+    """The squares that a thing covers."""
 
-    Attributes
-    ----------
-    west, south : column and row of the south-west square of `covered`.
-    covered : (rows, columns) bool; [row, column] is True where the thing covers the square (west + column, south +
-        row).
-    """
-
-    west: int
+    west: int  # column and row of the south-west square of `covered`
     south: int
+    # (rows, columns) bool; [row, column] is True where the thing covers the square (west + column, south + row)
     covered: Bools
 
     def covers(self, i: int, j: int) -> bool:
@@ -46,47 +40,19 @@ def colour_code(letter: str) -> int:
 
 
 def project(shape: Any) -> Projection:
-    """Return the digital representation of a shape.
-
-    Parameters
-    ----------
-    shape : shapely geometry, squares, table frame.
-
-    Returns
-    -------
-    The covered squares within the shape's containing rectangle.
-    """
+    """Return the digital representation of a shape."""
     return project_edges(outline_edges(shape))
 
 
 def project_edges(edges: Floats) -> Projection:
-    """Return the digital representation of the shape with some edges.
-
-    Parameters
-    ----------
-    edges : (n, 4) the boundary, as `geometry.raster.rasterize.outline_edges` returns it; squares, table frame.
-
-    Returns
-    -------
-    The covered squares within the shape's containing rectangle.
-    """
+    """Return the digital representation of the shape with some edges."""
     if not len(edges):
         return Projection(0, 0, np.zeros((0, 0), dtype=bool))
     return Projection(*window_of(edges))
 
 
 class Table:
-    """The TABLE array of a world.
-
-    When several things share a square, movable things come first, then fixed things, each in the order of their names,
-    then the verge. The first one determines the colour that is felt, and what a grasp takes.
-
-    Attributes
-    ----------
-    width, height : the size of the table, in squares.
-    colours : (height, width) uint8, row 0 in the south: the colour of each square as the number of its letter in the
-        alphabet, from 1; 0 for floor. Utak is not in it.
-    """
+    """The TABLE array of a world."""
 
     def __init__(self, world: World) -> None:
         self.width, self.height = world.width, world.height
@@ -107,10 +73,7 @@ class Table:
         return copied
 
     def update(self, name: str, edges: Floats) -> None:
-        """Project a movable thing again after it has moved.
-
-        edges : (n, 4) its boundary, as `geometry.raster.rasterize.outline_edges` returns it.
-        """
+        """Project a movable thing again after it has moved."""
         before, now = self._movable[name], project_edges(edges)
         self._movable[name] = now
         rows, columns = zip(before.covered.shape, now.covered.shape, strict=True)

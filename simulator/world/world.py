@@ -9,39 +9,24 @@ VERGE_COLOUR = "b"  # docs/files.md
 
 @dataclass(frozen=True)
 class Thing:
-    """An object on the table.
+    """An object on the table."""
 
-    Attributes
-    ----------
-    name : its name in the world file.
-    colour : one lower-case letter.
-    polygon : shapely Polygon, squares, table frame; without holes when the thing can be moved.
-    """
-
-    name: str
-    colour: str
-    polygon: Any
+    name: str  # its name in the world file
+    colour: str  # one lower-case letter
+    polygon: Any  # shapely Polygon, squares, table frame; without holes when the thing can be moved
 
 
 @dataclass(frozen=True)
 class World:
-    """A table with its contents at the start.
+    """A table with its contents at the start."""
 
-    Attributes
-    ----------
-    width, height : the size of the table, in squares.
-    verge : shapely Polygon or MultiPolygon, colour b; it never moves. Everything beyond the table is verge, too.
-    movable, fixed : the things, in the order of their names.
-    utak : the point (x, y) where Utak wakes.
-    heading : the direction that Utak faces, in degrees from the table's north, counter-clockwise positive, 0 to 359.
-    """
-
-    width: int
+    width: int  # the size of the table, in squares
     height: int
-    verge: Any
-    movable: tuple[Thing, ...]
+    verge: Any  # shapely Polygon or MultiPolygon, colour b; it never moves. Everything beyond the table is verge, too.
+    movable: tuple[Thing, ...]  # the things, in the order of their names
     fixed: tuple[Thing, ...]
-    utak: tuple[float, float]
+    utak: tuple[float, float]  # the point (x, y) where Utak wakes
+    # The direction that Utak faces, in degrees from the table's north, counter-clockwise positive, 0 to 359
     heading: int
 
 

@@ -18,35 +18,16 @@ STEP_VECTORS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1
 
 
 class ActionForm(NamedTuple):
-    """A way to write actions.
+    """A way to write actions."""
 
-    Attributes
-    ----------
-    space : the space of one action.
-    command : returns the command that an action stands for.
-    commands : returns the commands of a batch of actions, as `gymnasium.vector.utils.batch_space` lays them out.
-    """
-
-    space: spaces.Space[Any]
-    command: Callable[[Any], Command]
+    space: spaces.Space[Any]  # the space of one action
+    command: Callable[[Any], Command]  # returns the command that an action stands for
+    # Returns the commands of a batch of actions, as `gymnasium.vector.utils.batch_space` lays them out.
     commands: Callable[[Any], list[Command]]
 
 
 def action_form(name: str, stride: float) -> ActionForm:
-    """Return a way to write actions by its name.
-
-    Parameters
-    ----------
-    name : str
-        "dict", "box" or "discrete".
-    stride : float
-        The greatest way east and north of a move or a push in one action, squares; not used for "discrete".
-
-    Raises
-    ------
-    ValueError
-        There is no such way, or the stride is not above 0.
-    """
+    """Return a way to write actions by its name."""
     if not 0.0 < stride < math.inf:
         raise ValueError(f"stride must be above 0 and finite, not {stride}")
     forms = {"dict": _dictionaries, "box": _boxes, "discrete": _numbers}
@@ -56,11 +37,7 @@ def action_form(name: str, stride: float) -> ActionForm:
 
 
 def _dictionaries(stride: float) -> ActionForm:
-    """Return the form of actions as dictionaries: `do`, and the parameters of all commands.
-
-    The way is east and north as parts of the stride, the turn a part of half a turn: Gymnasium asks for numbers from -1
-    to 1.
-    """
+    """Return the form of actions as dictionaries: `do`, and the parameters of all commands."""
     space = spaces.Dict(
         {
             "do": spaces.Discrete(len(ACTION_KINDS)),
@@ -95,11 +72,7 @@ def _of_values(stride: float, do: int, way: Sequence[float], turn: Sequence[floa
 
 
 def _boxes(stride: float) -> ActionForm:
-    """Return the form of actions as 8 numbers from -1 to 1: five preferences, east, north and a turn.
-
-    The greatest preference says what is done. East and north are parts of the stride, and the compass point nearest to
-    them is the direction of a grasp. The turn is a part of half a turn.
-    """
+    """Return the form of actions as 8 numbers from -1 to 1: five preferences, east, north and a turn."""
     space = spaces.Box(-1.0, 1.0, (len(ACTION_KINDS) + 3,), np.float32)
 
     return ActionForm(space, partial(_of_box, stride), partial(_of_boxes, stride))

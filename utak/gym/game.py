@@ -16,53 +16,23 @@ Scenarios = Scenario | Path | str | Sequence[Scenario | Path | str]
 
 
 class Rules(NamedTuple):
-    """The rules of a game.
+    """The rules of a game."""
 
-    Attributes
-    ----------
-    reward : "progress", "sparse" or None.
-    max_steps : the number of commands after which a play is cut off.
-    noise : how much motions are disturbed, 0 to 1.
-    """
-
-    reward: str | None = "progress"
-    max_steps: int = 200
-    noise: float = 0.0
+    reward: str | None = "progress"  # "progress", "sparse" or None
+    max_steps: int = 200  # the number of commands after which a play is cut off
+    noise: float = 0.0  # how much motions are disturbed, 0 to 1
 
 
 class PlayOutcome(NamedTuple):
-    """The outcome of a command.
+    """The outcome of a command."""
 
-    Attributes
-    ----------
-    reward : as the rules say.
-    terminated : whether all that is expected holds.
-    truncated : whether the commands are used up.
-    """
-
-    reward: float
-    terminated: bool
-    truncated: bool
+    reward: float  # as the rules say
+    terminated: bool  # whether all that is expected holds
+    truncated: bool  # whether the commands are used up
 
 
 class Game:
-    """A table that is played on, one play after the other.
-
-    Parameters
-    ----------
-    scenario : the table and what is expected.
-    rules : the rewards and limits.
-
-    Attributes
-    ----------
-    table : the table.
-    steps : the number of commands in this play.
-    progress : what is achieved.
-
-    Raises
-    ------
-    ValueError : rewards are wanted where nothing is expected, or where failure is expected; or a rule is out of range.
-    """
+    """A table that is played on, one play after the other."""
 
     def __init__(self, scenario: ScenarioContent, rules: Rules) -> None:
         self._expectations = scenario.expectations or ()

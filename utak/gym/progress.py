@@ -30,18 +30,7 @@ Watch = Callable[[Snapshot], bool]  # sees one halt after the other, and returns
 
 
 class ExpectationProgress:
-    """The progress of one play towards what is expected.
-
-    Parameters
-    ----------
-    expectations : the facts of expect.lp; () when nothing is expected.
-    world : the table at the start.
-
-    Attributes
-    ----------
-    share : the part of the points that is earned now, 0 to 1; limits of time, and what a mind shall say, do not count.
-    achieved : whether all that is expected of the table holds now; False when nothing is.
-    """
+    """The progress of one play towards what is expected."""
 
     def __init__(self, expectations: Sequence[Fact], world: World) -> None:
         points = {
@@ -56,14 +45,7 @@ class ExpectationProgress:
         self.share, self.achieved = 0.0, False
 
     def see(self, step: int, utak: tuple[float, float], polygons: Mapping[str, Any]) -> None:
-        """Take in a halt; step 0 is that of waking.
-
-        Parameters
-        ----------
-        step : the number of commands so far.
-        utak : where the robot is, squares, table frame.
-        polygons : the outlines of the movable things by name.
-        """
+        """Take in a halt; step 0 is that of waking."""
         halt = Snapshot(step, utak, {**self._fixed, **polygons} if self._fixed else polygons)
         met = [(watch(halt), number) for watch, number in self._watches]
         earned = sum(number for is_met, number in met if is_met)

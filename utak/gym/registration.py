@@ -5,13 +5,7 @@ WANTED = "the environment needs Gymnasium: pip install gymnasium"
 
 
 def register_environments() -> None:
-    """Make `utak/Tabletop-v0` known to Gymnasium; nothing happens when it is known already.
-
-    Raises
-    ------
-    ImportError
-        Gymnasium is not installed.
-    """
+    """Make `utak/Tabletop-v0` known to Gymnasium; nothing happens when it is known already."""
     try:
         from gymnasium.envs.registration import register, registry
     except ImportError as missing:

@@ -31,29 +31,22 @@ SLIP_OFFSETS = sorted(
 
 
 class CarryOutcome(NamedTuple):
-    """A possible outcome of a motion with an object in hand.
+    """A possible outcome of a motion with an object in hand."""
 
-    Attributes
-    ----------
-    how : predicted; stuck (nothing moved); blocked (it ended early); slipped (it ended beside); smaller (as commanded,
-        but the object does not fill its squares); larger (as commanded, but there is more of the object than was seen);
-        parted (as commanded, but the object is only a part of what seemed one thing).
-    place : of Utak after it, (x, y) in squares, map frame; for an end on a grid line the side from which the
-        observation is made.
-    polygon : the outline of the object after it (shapely Polygon), map frame.
-    degrees : by which the object was turned, counter-clockwise positive.
-    distance : of the outermost point of the object from where it was predicted, along its path, in squares.
-    contact_squares : the squares (column, row) of the map frame one of which blocked it; empty where what did is known.
-    insets : the sub-cell extent of the object (how far each side lies within the squares in which it was seen, as it
-        lay when first held), where another one is believed than before; else None.
-    """
-
+    # Predicted; stuck (nothing moved); blocked (it ended early); slipped (it ended beside); smaller (as commanded, but
+    # the object does not fill its squares); larger (as commanded, but there is more of the object than was seen);
+    # parted (as commanded, but the object is only a part of what seemed one thing)
     how: str
+    # Of Utak after it, (x, y) in squares, map frame; for an end on a grid line the side from which the observation is
+    # made
     place: Position
-    polygon: Any
-    degrees: float
-    distance: float
+    polygon: Any  # the outline of the object after it (shapely Polygon), map frame
+    degrees: float  # by which the object was turned, counter-clockwise positive
+    distance: float  # of the outermost point of the object from where it was predicted, along its path, in squares
+    # The squares (column, row) of the map frame one of which blocked it; empty where what did is known
     contact_squares: frozenset[Square] = frozenset()
+    # The sub-cell extent of the object (how far each side lies within the squares in which it was seen, as it lay when
+    # first held), where another one is believed than before; else None
     insets: SubcellExtent | None = None
 
     @property
@@ -68,33 +61,12 @@ class CarryOutcome(NamedTuple):
 
 
 def predicted_outcome(place: Position, polygon: Any, motion: Motion) -> CarryOutcome:
-    """Return the outcome of the whole motion as commanded, at a distance of 0 from the predicted one.
-
-    It is of kind predicted: Utak's place (x, y) and the object's outline after it, in squares, map frame, and by how
-    many degrees the object was turned (0 for a straight motion).
-
-    Parameters
-    ----------
-    place : of Utak before it, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : map frame.
-    """
+    """Return the outcome of the whole motion as commanded, at a distance of 0 from the predicted one."""
     return _outcome("predicted", place, polygon, motion, 0.0)
 
 
 def blocked_by_known(place: Position, polygon: Any, motion: Motion, known: Obstacles) -> CarryOutcome | None:
-    """Return the motion as far as its first contact with known obstacles; None when it meets none.
-
-    It is an outcome of kind blocked: Utak's place (x, y) and the object's outline at the contact, in squares, map
-    frame; it names no contact squares.
-
-    Parameters
-    ----------
-    place : of Utak before it, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : as commanded, map frame.
-    known : the obstacles, map frame; they stop Utak as well as the object.
-    """
+    """Return the motion as far as its first contact with known obstacles; None when it meets none."""
     fraction = known.first_contact(ContactBody(polygon, [place]), motion).fraction
     return partial_outcome(place, polygon, motion, fraction) if fraction < 1.0 else None
 
@@ -106,37 +78,14 @@ def partial_outcome(
     fraction: float,
     contact_squares: frozenset[Square] = frozenset(),
 ) -> CarryOutcome:
-    """Return the outcome of a motion that was blocked after a fraction of it.
-
-    It is of kind blocked: Utak's place (x, y) and the object's outline there, in squares, map frame, the rotation so
-    far in degrees, and the `distance` that the outermost point of the object had still to go, in squares.
-
-    Parameters
-    ----------
-    place : of Utak before it, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : as commanded, map frame.
-    fraction : of the motion before the contact, 0 to 1.
-    contact_squares : the open squares one of which blocked it, map frame; empty where what did is known.
-    """
+    """Return the outcome of a motion that was blocked after a fraction of it."""
     distance = motion_length(place, polygon, motion) * (1.0 - fraction)
     outcome = _outcome("blocked", place, polygon, motion.part(fraction), distance)
     return outcome._replace(contact_squares=contact_squares)
 
 
 def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, Any]:
-    """Return Utak's place (x, y) and the outline of the object CONTACT_REACH (0.5) squares further on the motion.
-
-    Both are in squares, map frame; the outline is a shapely Polygon, and Utak's place stays on a turn.
-
-    An obstacle that blocked the motion at `place` is met there. A shorter motion is carried out once as a whole.
-
-    Parameters
-    ----------
-    place : where Utak was blocked, in squares, map frame.
-    polygon : the outline of the object there, shapely Polygon, map frame.
-    motion : as commanded, map frame; the outermost point of the object goes that far.
-    """
+    """Return Utak's place (x, y) and the outline of the object CONTACT_REACH (0.5) squares further on the motion."""
     length = motion_length(place, polygon, motion)
     outcome = _outcome(
         "predicted", place, polygon, motion.part(min(1.0, CONTACT_REACH / max(length, CONTACT_REACH))), 0.0
@@ -145,19 +94,10 @@ def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, An
 
 
 def other_outcomes(place: Position, polygon: Any, motion: Motion) -> Iterator[CarryOutcome]:
-    """Yield all outcomes but the commanded one, the likeliest of each kind first: stuck, blocked, slipped.
-
-    One stuck, at the place of the start. Blocked ones come at steps of at most 0.25 squares, the furthest first;
-    slipped ones the nearest to the commanded end first (for a turn first those turned otherwise, by up to 6 degrees,
-    then those shifted, by up to 1 square in each axis). Each has Utak's place (x, y) and the object's outline after it,
-    in squares, map frame, and its distance from the commanded end, in squares.
-
-    Parameters
-    ----------
-    place : of Utak before the motion, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : as commanded, map frame.
-    """
+    """Yield all outcomes but the commanded one, the likeliest of each kind first: stuck, blocked, slipped."""
+    # Blocked ones come at steps of at most 0.25 squares, the furthest first; slipped ones the nearest to the commanded
+    # end first (for a turn first those turned otherwise, by up to 6 degrees, then those shifted, by up to 1 square in
+    # each axis).
     length = motion_length(place, polygon, motion)
     yield CarryOutcome("stuck", place, polygon, 0.0, length)
     steps = math.ceil(length / END_SPACING)
@@ -173,14 +113,7 @@ def other_outcomes(place: Position, polygon: Any, motion: Motion) -> Iterator[Ca
 
 
 def motion_length(place: Position, polygon: Any, motion: Motion) -> float:
-    """Return the length of the path of the outermost point of an object on a motion, in squares.
-
-    Parameters
-    ----------
-    place : the centre of a turn, (x, y) in squares, map frame; not used for a straight motion.
-    polygon : the outline before the motion, shapely Polygon, map frame.
-    motion : map frame.
-    """
+    """Return the length of the path of the outermost point of an object on a motion, in squares."""
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     corners = np.array(polygon.exterior.coords) - np.array(place)
@@ -188,16 +121,7 @@ def motion_length(place: Position, polygon: Any, motion: Motion) -> float:
 
 
 def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: float) -> CarryOutcome:
-    """Return the outcome of a motion that really happened: Utak's place and the object's outline after it, map frame.
-
-    Parameters
-    ----------
-    how : its kind, taken over into the result.
-    place : of Utak before the motion, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : the whole of what happened, map frame.
-    distance : from the predicted outcome, in squares; taken over.
-    """
+    """Return the outcome of a motion that really happened: Utak's place and the object's outline after it."""
     if isinstance(motion, Translate):
         place = (place[0] + motion.dx, place[1] + motion.dy)
     degrees = motion.degrees if isinstance(motion, Rotate) else 0.0
@@ -205,13 +129,7 @@ def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: 
 
 
 def _slipped_motions(motion: Motion, length: float) -> list[tuple[Motion, float]]:
-    """Return motions a little beside a motion, each with the distance of its end from the commanded one, in squares.
-
-    The nearest come first: for a turn 24 turns about the same point, up to 6 degrees more or less; for a straight
-    motion 80 others, up to 1 square aside in each axis. The motion itself is left out.
-
-    motion : as commanded, map frame. length : of it, in squares: the path of the outermost point of the object.
-    """
+    """Return motions a little beside a motion, each with the distance of its end from the commanded one, in squares."""
     if isinstance(motion, Rotate):
         per_degree = length / max(abs(motion.degrees), 1.0)
         number = round(TURN_SLIPS_PER_DEGREE * MAX_TURN_SLIP)

@@ -29,28 +29,17 @@ NO_SQUARES: frozenset[Square] = frozenset()
 
 
 class ContactHypothesis(NamedTuple):
-    """A contact hypothesis: a motion ended where it met an obstacle.
+    """A contact hypothesis: a motion ended where it met an obstacle."""
 
-    Attributes
-    ----------
-    fraction : of the motion before the contact, 0 to 1.
-    chance : the probability that it came so far, and no further.
-    squares : the likeliest of the open squares one of which is the obstacle then, (column, row) of the map frame; empty
-        where the obstacle is known.
-    """
-
-    fraction: float
-    chance: float
+    fraction: float  # of the motion before the contact, 0 to 1
+    chance: float  # the probability that it came so far, and no further
+    # The likeliest of the open squares one of which is the obstacle then, (column, row) of the map frame; empty where
+    # the obstacle is known
     squares: frozenset[Square] = NO_SQUARES
 
 
 class Obstructions:
-    """The obstacles, known and possible, that Utak and an object in hand may meet on a motion.
-
-    Attributes
-    ----------
-    known : the occupied squares about the motion, as obstacles, map frame.
-    """
+    """The obstacles, known and possible, that Utak and an object in hand may meet on a motion."""
 
     def __init__(
         self,
@@ -60,44 +49,18 @@ class Obstructions:
         motion: Motion,
         pictures: Completions | None = None,
     ) -> None:
-        """Find the obstacles about a motion.
-
-        Parameters
-        ----------
-        occupancy : the map. It may grow, but is not changed otherwise.
-        place : of Utak before the motion, (x, y) in squares, map frame.
-        polygon : the outline of the object before it, shapely Polygon, map frame.
-        motion : as commanded, map frame.
-        pictures : sampled maps that agree with all counts, by which the chance of a contact is estimated; by counts
-            alone when None.
-        """
+        """Find the obstacles about a motion."""
         known, self._squares = (_squares_near(occupancy, place, polygon, motion, state) for state in (OCCUPIED, OPEN))
         self.known = _obstacles(tuple(known))
         self._chance = ObstacleChance(occupancy, pictures)
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
-        """Return each open square about the motion, (column, row) of the map frame, with the obstacle it may be.
-
-        The obstacle is the square itself, of side 1, map frame. In raster order, row by row from the south; [] when no
-        square is open.
-        """
+        """Return each open square about the motion, (column, row) of the map frame, with the obstacle it may be."""
         return [(square, _obstacles((square,))) for square in self._squares]
 
     def contacts(self, place: Position, polygon: Any, motion: Motion) -> list[ContactHypothesis]:
-        """Return all contacts that may have blocked the motion, in the order of the way; [] when nothing can be met.
-
-        One for each fraction (0 to 1) of the motion at which something can be met, with its chance and the open squares
-        (column, row), map frame, that may stand there. Those with open squares come first, and last the one with known
-        obstacles, beyond which the motion cannot go. The chances sum to 1 at most; the rest is that the motion went its
-        whole way.
-
-        Parameters
-        ----------
-        place : of Utak before the motion, about where this was made for; (x, y) in squares, map frame.
-        polygon : the outline of the object before it, shapely Polygon, map frame.
-        motion : as commanded, map frame.
-        """
+        """Return all contacts that may have blocked the motion, in the order of the way; [] when nothing can be met."""
         body = ContactBody(polygon, [place])
         end = self.known.first_contact(body, motion).fraction
         near = _are_reachable(self._squares, place, polygon, motion)
@@ -116,37 +79,14 @@ class Obstructions:
         return [*contacts, ContactHypothesis(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else contacts
 
     def outcomes(self, place: Position, polygon: Any, motion: Motion) -> list[CarryOutcome]:
-        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first; [] for none.
-
-        One for each contact, of kind blocked: Utak's place (x, y) and the object's outline there, in squares, map
-        frame, and the open squares one of which may have blocked it.
-
-        Parameters
-        ----------
-        place : of Utak before the motion, about where this was made for; (x, y) in squares, map frame.
-        polygon : the outline of the object before it, shapely Polygon, map frame.
-        motion : as commanded, map frame.
-        """
+        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first; [] for none."""
         return contact_outcomes(self.contacts(place, polygon, motion), place, polygon, motion)
 
 
 def likeliest_contact_near(
     contacts: Iterable[ContactHypothesis], place: Position, polygon: Any, motion: Motion, fraction: float
 ) -> ContactHypothesis | None:
-    """Return the likeliest contact near a fraction of a motion; None when there is none.
-
-    Near is within CONTACT_DISTANCE_ERROR (0.25) squares along the path of the outermost point of the object. The result
-    is one of `contacts`: the fraction (0 to 1) of the motion before it, its chance, and its open squares; of equal
-    chances the first given.
-
-    Parameters
-    ----------
-    contacts : those that may have blocked the motion.
-    place : of Utak before it, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : as commanded, map frame; not of length 0.
-    fraction : of the motion, 0 to 1.
-    """
+    """Return the likeliest contact near a fraction of a motion; None when there is none."""
     far = CONTACT_DISTANCE_ERROR / motion_length(place, polygon, motion)
     about = [contact for contact in contacts if abs(contact.fraction - fraction) < far]
     return max(about, key=lambda contact: contact.chance, default=None)
@@ -155,18 +95,7 @@ def likeliest_contact_near(
 def contact_outcomes(
     contacts: Iterable[ContactHypothesis], place: Position, polygon: Any, motion: Motion
 ) -> list[CarryOutcome]:
-    """Return the outcomes of some contacts of a motion, all blocked, the likeliest first; [] for no contacts.
-
-    One for each contact: Utak's place (x, y) and the object's outline there, in squares, map frame, its rotation in
-    degrees, and the open squares one of which may have blocked it.
-
-    Parameters
-    ----------
-    contacts : those that may have blocked the motion.
-    place : of Utak before it, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : as commanded, map frame.
-    """
+    """Return the outcomes of some contacts of a motion, all blocked, the likeliest first; [] for no contacts."""
     likely = sorted(contacts, key=lambda contact: -contact.chance)
     return [partial_outcome(place, polygon, motion, contact.fraction, contact.squares) for contact in likely]
 
@@ -178,19 +107,9 @@ def suspected_squares(
     others: Iterable[HeldObject],
     occupancy: OccupancyMap,
 ) -> frozenset[Square]:
-    """Return the likeliest of the open squares one of which blocked an object, or Utak with it.
-
-    As (column, row) of the map frame: those that the outcome names, if it does. Else empty when nothing was blocked,
-    when the object was never seen to move (the hand may be empty), or when something known explains it.
-
-    Parameters
-    ----------
-    outcome : the chosen outcome of the motion; None when there was none.
-    motion : as commanded, map frame.
-    held : the object in hand, before the motion.
-    others : all other objects that were ever held, where they lie, map frame.
-    occupancy : the map.
-    """
+    """Return the likeliest of the open squares one of which blocked an object, or Utak with it."""
+    # Else empty when nothing was blocked, when the object was never seen to move (the hand may be empty), or when
+    # something known explains it.
     if outcome is not None and outcome.contact_squares:
         return outcome.contact_squares
     if outcome is None or not outcome.stopped or not held.proven:
@@ -213,25 +132,12 @@ def square_polygon(square: Square) -> Any:
 
 
 def _likeliest_squares(odds: Mapping[Square, float]) -> frozenset[Square]:
-    """Return those squares whose log odds are within LIKELIEST_ODDS_GAP (1) of the highest; empty for none.
-
-    odds : by square (column, row), map frame: the log odds (natural logarithm) that it is occupied.
-    """
+    """Return those squares whose log odds are within LIKELIEST_ODDS_GAP (1) of the highest; empty for none."""
     return frozenset(square for square, odd in odds.items() if odd >= max(odds.values()) - LIKELIEST_ODDS_GAP)
 
 
 def _are_reachable(squares: Sequence[Square], place: Position, polygon: Any, motion: Motion) -> list[bool]:
-    """Return for each square whether Utak or the object may meet it on a motion; False only where neither can.
-
-    In the order of `squares`, one for each. It is a rough test by bounds: True does not mean that it is met.
-
-    Parameters
-    ----------
-    squares : (column, row), map frame.
-    place : of Utak before the motion, (x, y) in squares, map frame.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : map frame.
-    """
+    """Return for each square whether Utak or the object may meet it on a motion; False only where neither can."""
     corners, low = np.array([*shapely.get_coordinates(polygon), place]), np.array(squares, np.float64).reshape(-1, 2)
     if isinstance(motion, Rotate):  # every point keeps its distance from the centre of the turn
         far = np.hypot(*(corners - np.array(motion.about)).T).max() + UNREACHED_MARGIN
@@ -251,19 +157,7 @@ def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
 
 
 def _squares_near(occupancy: OccupancyMap, place: Position, polygon: Any, motion: Motion, state: int) -> list[Square]:
-    """Return the squares of one state within OBSTACLE_MARGIN (3) squares of the bounding box of a motion.
-
-    As (column, row) of the map frame, row by row from the south, each row from the west; squares beyond the map are
-    left out.
-
-    Parameters
-    ----------
-    occupancy : the map.
-    place : of Utak before the motion, (x, y) in squares, map frame; the centre of a turn.
-    polygon : the outline of the object before it, shapely Polygon, map frame.
-    motion : map frame.
-    state : OCCUPIED, OPEN or FREE.
-    """
+    """Return the squares of one state within OBSTACLE_MARGIN (3) squares of the bounding box of a motion."""
     corners = np.array([*shapely.get_coordinates(polygon), place])
     if isinstance(motion, Rotate):
         reach = float(np.hypot(*(corners - np.array(place)).T).max())

@@ -19,53 +19,40 @@ MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no les
 
 
 class Explanation(NamedTuple):
-    """An explanation of an observation.
+    """An explanation of an observation."""
 
-    The map frame has its axes along the grid and (0, 0) at the south-west corner of the square of waking.
-
-    Attributes
-    ----------
-    how : its kind, as in kb/asp/accommodation.lp: predicted (the motion went as commanded), blocked (it ended early),
-        slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or
-        this one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held
-        object is smaller or larger than it seemed), parted (as commanded, but the held object is only a part of what
-        seemed one thing); or lost or anew after a new beginning.
-    place : where the observation was made, (x, y) in squares, map frame of `frame`.
-    frame : the frame by this explanation.
-    residual : number of fields that it leaves unexplained (they contradict the map or an object by it); 0 is best.
-    distance : from the predicted end of the motion, in squares; for misled by how far ends are corrected in all, for
-        larger how far the object goes on beyond what was seen.
-    outcome : of the motion of the object in hand; None when nothing was to be moved.
-    hypotheses : the frame hypotheses that are left, if the frame or the ends of motions are others; else empty.
-    reestimated : the motion, earlier or newest, that ended elsewhere than believed, with the shift of all observations
-        since, (east, north) in squares, Utak's own frame; None when none did.
-    chance : the probability (0 to 1) of this end of the motion before the observation; None when it was not asked.
-    prior_cost : by how much the simplest map costs more than by the best explanation, in log odds (natural logarithm).
-    contact_squares : the open squares (not settled as free or occupied) one of which blocked the motion, map frame.
-    origin_weighed : whether `prior_cost` contains the log odds against the origin of `frame`.
-    instead : the object before the motion, if it was larger than was seen, or only a part of it; else None.
-    left : the squares of what seemed part of the object and stayed where it was, map frame; empty for none.
-    contradicted : whether it cannot be so though no single field contradicts it: the counts of several observations
-        together do.
-    cramped : whether it leaves the origin of the frame suspiciously little room in the square of waking.
-    """
-
+    # Its kind, as in kb/asp/accommodation.lp: predicted (the motion went as commanded), blocked (it ended early),
+    # slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or this
+    # one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held object is
+    # smaller or larger than it seemed), parted (as commanded, but the held object is only a part of what seemed one
+    # thing); or lost or anew after a new beginning.
     how: str
-    place: Position
-    frame: Frame
-    residual: int
+    place: Position  # where the observation was made, (x, y) in squares, map frame of `frame`
+    frame: Frame  # the frame by this explanation
+    residual: int  # number of fields that it leaves unexplained (they contradict the map or an object by it); 0 is best
+    # From the predicted end of the motion, in squares; for misled by how far ends are corrected in all, for larger how
+    # far the object goes on beyond what was seen
     distance: float
-    outcome: CarryOutcome | None = None
+    outcome: CarryOutcome | None = None  # of the motion of the object in hand; None when nothing was to be moved
+    # The frame hypotheses that are left, if the frame or the ends of motions are others; else empty
     hypotheses: tuple[FrameHypothesis, ...] = ()
+    # The motion, earlier or newest, that ended elsewhere than believed, with the shift of all observations since,
+    # (east, north) in squares, Utak's own frame; None when none did
     reestimated: ReestimatedWalk | None = None
+    # The probability (0 to 1) of this end of the motion before the observation; None when it was not asked
     chance: float | None = None
+    # By how much the simplest map costs more than by the best explanation, in log odds (natural logarithm)
     prior_cost: float = 0.0
+    # The open squares (not settled as free or occupied) one of which blocked the motion, map frame
     contact_squares: frozenset[Square] = frozenset()
-    origin_weighed: bool = False
+    origin_weighed: bool = False  # whether `prior_cost` contains the log odds against the origin of `frame`
+    # The object before the motion, if it was larger than was seen, or only a part of it; else None
     instead: HeldObject | None = None
+    # The squares of what seemed part of the object and stayed where it was, map frame; empty for none
     left: frozenset[Square] = frozenset()
+    # Whether it cannot be so though no single field contradicts it: the counts of several observations together do
     contradicted: bool = False
-    cramped: bool = False
+    cramped: bool = False  # whether it leaves the origin of the frame suspiciously little room in the square of waking
 
     @property
     def unexplained(self) -> int:
@@ -74,10 +61,7 @@ class Explanation(NamedTuple):
 
     @property
     def remaps(self) -> bool:
-        """Return whether the frame, or where earlier observations were made, is another one than believed.
-
-        So it is for the kinds turned, misled, lost and anew.
-        """
+        """Return whether the frame, or where earlier observations were made, is another one than believed."""
         return self.how in ("turned", "misled", "lost", "anew")
 
     @property
@@ -87,22 +71,12 @@ class Explanation(NamedTuple):
 
     @property
     def is_odd(self) -> bool:
-        """Return whether both the angle of the frame (not 0) and its origin (not the middle of a square) are unusual.
-
-        False where the prior cost contains the odds of the origin already.
-        """
+        """Return whether both the angle of the frame (not 0) and its origin (no square's middle) are unusual."""
         return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 
 def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
-    """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation.
-
-    All are of kind misled; among those alike the order given is kept. [] when there is no re-estimation. One for each:
-    where the newest observation was made then, (x, y) in squares, map frame of its frame, and the number of fields left
-    unexplained (residual). The hypotheses left are those of all of them.
-
-    ends : the re-estimations of each motion (other ends with which no observations contradict each other).
-    """
+    """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation."""
     found = [one for motion in ends for one in motion]
     if not found:
         return []
@@ -113,39 +87,14 @@ def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[
 
 
 def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
-    """Return the explanation, of kind misled, by a re-estimated motion.
-
-    Its place is where the newest observation was made then, (x, y) in squares, map frame of its frame; its `distance`
-    is how far the end of the motion is shifted, in squares; its residual is that of the re-estimation, a count of
-    fields.
-
-    Parameters
-    ----------
-    one : the re-estimation: another end of a motion, in some frame.
-    left : the frame hypotheses that are left then; taken over.
-    """
+    """Return the explanation, of kind misled, by a re-estimated motion."""
     frame, distance = one.hypothesis.frame, math.hypot(*one.correction.shift)
     place = frame.place_from_utak(*one.newest)
     return Explanation("misled", place, frame, one.residual, distance, None, left, one)
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:
-    """Return the explanation that kb/asp/accommodation.lp chooses: one of those given, unchanged.
-
-    Its price is the least: 20 for each field left unexplained, and so much for its kind, its distance and its chance.
-
-    Parameters
-    ----------
-    explanations : at least one; of those that cost the same the first is chosen. For explanation number n (from 0)
-        these facts are added: explanation(n,How,Residual,Distance), Distance in squares rounded up; odd(n),
-        crooked(n,Price) and unlikely(n,Price) where they hold, Price in half nats (2 for a factor of e in probability).
-    facts : the other inputs of that encoding, as text without a full stop: trust(N), met(n), slips, off_middle, proven,
-        stands, clear, uneven, unchanged.
-
-    Raises
-    ------
-    AssertionError : the encoding has no answer, which never happens.
-    """
+    """Return the explanation that kb/asp/accommodation.lp chooses: one of those given, unchanged."""
     offered = [
         f"explanation({number},{e.how},{e.residual},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]

@@ -28,29 +28,21 @@ ORIGIN_GRID = 11  # points along either side of what is left for the origin: 0.1
 
 
 class FrameHypothesis(NamedTuple):
-    """A frame hypothesis: an orientation of the grid, and where in its square Utak may have woken.
+    """A frame hypothesis: an orientation of the grid, and where in its square Utak may have woken."""
 
-    Attributes
-    ----------
-    angle : degrees by which Utak's own frame is turned against the grid of the map, counter-clockwise positive, -44 to
-        45; as of `Frame.angle`.
-    box : (west, south, east, north) bounds of the origin within the square of waking, in squares, map frame, 0 to 1; a
-        point where the origin is known exactly.
-    prior_cost : by how much the simplest map costs more than on the best frame, in log odds (natural logarithm); 0 when
-        not weighed.
-    """
-
+    # Degrees by which Utak's own frame is turned against the grid of the map, counter-clockwise positive, -44 to 45; as
+    # of `Frame.angle`.
     angle: int
+    # (west, south, east, north) bounds of the origin within the square of waking, in squares, map frame, 0 to 1; a
+    # point where the origin is known exactly
     box: OriginBox
+    # By how much the simplest map costs more than on the best frame, in log odds (natural logarithm); 0 when not
+    # weighed
     prior_cost: float = 0.0
 
     @property
     def frame(self) -> Frame:
-        """Return the likeliest frame: with its origin in the middle of the square of waking if the box contains it.
-
-        Else the origin is the middle of the box. The angle is that of the hypothesis, in degrees; the origin (x, y) in
-        squares, map frame, 0 to 1.
-        """
+        """Return the likeliest frame: with its origin in the middle of the square of waking if the box contains it."""
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
             return Frame(self.angle)
@@ -78,23 +70,14 @@ class FrameHypothesis(NamedTuple):
         return (east - west) * (north - south)
 
     def contains(self, frame: Frame) -> bool:
-        """Return whether a frame is one of those it allows: the same angle, and an origin within the box.
-
-        The east and north sides of the box do not belong to it.
-        """
+        """Return whether a frame is one of those it allows: the same angle, and an origin within the box."""
         west, south, east, north = self.box
         (x, y), point = frame.origin, self.is_point
         within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
         return self.angle == frame.angle and within
 
     def split(self, place: Position) -> "list[FrameHypothesis]":
-        """Return the parts of the hypothesis for each of which `place` lies in one square, the centre's part first.
-
-        They are 1, 2 or 4; together they are the whole. Each has the angle and the prior cost of the whole and a part
-        of its box (west, south, east, north), in squares, map frame.
-
-        place : a point of Utak's own frame, (east, north) in squares.
-        """
+        """Return the parts of the hypothesis for each of which `place` lies in one square, the centre's part first."""
         west, south, east, north = self.box
         dx, dy = Frame(self.angle).to_map(*place)
         columns = _split_interval(west, east, math.ceil(dx) - dx)
@@ -103,11 +86,7 @@ class FrameHypothesis(NamedTuple):
 
 
 def exact_hypothesis(frame: Frame) -> FrameHypothesis:
-    """Return the hypothesis that the frame is exactly `frame`: its box is the point of the origin.
-
-    So `angle` is that of `frame`, in degrees, and `box` its origin twice, (x, y, x, y) in squares, map frame, within
-    the square of waking. Its prior cost is 0.
-    """
+    """Return the hypothesis that the frame is exactly `frame`: its box is the point of the origin."""
     return FrameHypothesis(frame.angle, frame.origin + frame.origin)
 
 
@@ -116,66 +95,35 @@ ALL_HYPOTHESES = tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in
 
 
 class ObjectPose(NamedTuple):
-    """The pose of an object that was ever held, at the time of an observation.
+    """The pose of an object that was ever held, at the time of an observation."""
 
-    Attributes
-    ----------
-    name : of the object.
-    middle : the centroid of its outline, (east, north) in squares, Utak's own frame.
-    degrees : by which it had been turned since it was first held, counter-clockwise positive.
-    slack : squares by which it may have lain otherwise.
-    taken : the centroid of its outline where it was first held, as believed then, (east, north) in squares, Utak's own
-        frame.
-    """
-
-    name: str
-    middle: Position
-    degrees: float
-    slack: float
+    name: str  # of the object
+    middle: Position  # the centroid of its outline, (east, north) in squares, Utak's own frame
+    degrees: float  # by which it had been turned since it was first held, counter-clockwise positive
+    slack: float  # squares by which it may have lain otherwise
+    # The centroid of its outline where it was first held, as believed then, (east, north) in squares, Utak's own frame
     taken: Position
 
 
 class Observation(NamedTuple):
-    """An impression as count ranges, and where it was made.
+    """An impression as count ranges, and where it was made."""
 
-    Attributes
-    ----------
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the retina.
-    place : where it was made, (east, north) in squares, Utak's own frame.
-    moved : the poses at that time of all objects that had been held by then.
-    """
-
-    ranges: FieldRanges
-    place: Position
-    moved: tuple[ObjectPose, ...] = ()
+    ranges: FieldRanges  # (160, 2) int16, least and greatest count of occupied squares under each field of the retina
+    place: Position  # where it was made, (east, north) in squares, Utak's own frame
+    moved: tuple[ObjectPose, ...] = ()  # the poses at that time of all objects that had been held by then
 
 
 class UnsettledDisc(NamedTuple):
-    """A disc of the table where an object was moved, so that observations need not agree there.
+    """A disc of the table where an object was moved, so that observations need not agree there."""
 
-    Attributes
-    ----------
-    middle : its centre, (east, north) in squares, Utak's own frame.
-    reach : its radius in squares.
-    """
-
-    middle: Position
-    reach: float
+    middle: Position  # its centre, (east, north) in squares, Utak's own frame
+    reach: float  # its radius in squares
 
 
 def count_contradictions(
     frame: Frame, observations: Sequence[Observation], unsettled: Sequence[UnsettledDisc] = ()
 ) -> int:
-    """Return how many squares and fields contradict each other if the true frame is `frame`; 0 if it may be true.
-
-    Squares under fields that are quite full or quite empty are compared with each other, and other fields with them.
-
-    Parameters
-    ----------
-    frame : the frame in question.
-    observations : at least one, with their places in Utak's own frame.
-    unsettled : parts of the table that are not compared.
-    """
+    """Return how many squares and fields contradict each other if the true frame is `frame`; 0 if it may be true."""
     squares = observation_squares(frame, observations)
     return count_contradictions_at(frame, squares, stack_ranges(observations), unsettled)
 
@@ -188,15 +136,7 @@ def stack_ranges(observations: Sequence[Observation]) -> NDArray[np.int16]:
 def count_contradictions_at(
     frame: Frame, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[UnsettledDisc] = ()
 ) -> int:
-    """Return how many squares and fields contradict each other among observations made on the given squares.
-
-    Parameters
-    ----------
-    frame : the frame in question; its angle tells which squares each field covers.
-    squares : (observations, 2), column and row of the map frame.
-    ranges : (observations, 160, 2), least and greatest count of occupied squares under each field.
-    unsettled : parts of the table (discs, Utak's own frame) that are not compared.
-    """
+    """Return how many squares and fields contradict each other among observations made on the given squares."""
     apart = [(*frame.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
     discs = np.array(apart, np.float64).reshape(-1, 3)
     return total_contradictions(*frame.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
@@ -207,18 +147,8 @@ def prune_hypotheses(
     observations: Sequence[Observation],
     unsettled: Sequence[UnsettledDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
-    """Return what the last of the observations leaves of some hypotheses, in their order; empty when it refutes all.
-
-    Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame, with the prior
-    cost that it had. A hypothesis is split where the last observation would fall on different squares. Hypotheses by
-    which every observation falls on the same squares are kept or given up together.
-
-    Parameters
-    ----------
-    hypotheses : those that the earlier observations left.
-    observations : all so far, oldest first; the last one is not yet taken into account.
-    unsettled : parts of the table that are not compared.
-    """
+    """Return what the last of the observations leaves of some hypotheses, in their order; empty when it refutes all."""
+    # A hypothesis is split where the last observation would fall on different squares.
     judged: dict[tuple[int, bytes], bool] = {}
     left = []
     for part in (part for hypothesis in hypotheses for part in hypothesis.split(observations[-1].place)):
@@ -236,17 +166,7 @@ def consistent_hypotheses(
     hypotheses: Iterable[FrameHypothesis] = ALL_HYPOTHESES,
     unsettled: Sequence[UnsettledDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
-    """Return what all observations together leave of some hypotheses, in their order; empty when they refute all.
-
-    Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame. One hypothesis
-    may leave several parts, with boxes side by side; what is left is split where observations fall on other squares.
-
-    Parameters
-    ----------
-    observations : in the order in which they were made.
-    hypotheses : those to begin with; every orientation and origin by default.
-    unsettled : parts of the table where observations need not agree.
-    """
+    """Return what all observations together leave of some hypotheses, in their order; empty when they refute all."""
     left = tuple(hypotheses)
     for number in range(1, len(observations) + 1):
         left = prune_hypotheses(left, observations[:number], unsettled)
@@ -254,12 +174,7 @@ def consistent_hypotheses(
 
 
 def any_origin(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
-    """Return a hypothesis for each orientation in `angles`, in that order, that allows every origin.
-
-    Its box is the whole square of waking, (0, 0, 1, 1), its prior cost 0.
-
-    angles : degrees, counter-clockwise positive, as of `Frame.angle`.
-    """
+    """Return a hypothesis for each orientation in `angles`, in that order, that allows every origin."""
     return tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
 
 
@@ -269,23 +184,14 @@ def observation_squares(frame: Frame, observations: Sequence[Observation]) -> ND
 
 
 def place_squares(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the squares of the map frame that contain some places: (n, 2), column and row.
-
-    places : (n, 2), east and north in squares, Utak's own frame.
-    """
+    """Return the squares of the map frame that contain some places: (n, 2), column and row."""
     x, y = frame.places_from_utak(places[:, 0], places[:, 1])
     squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
 
 
 def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
-    """Return the origins for which every observation falls on the square on which it is believed to have fallen.
-
-    For all of these origins everything at rest looked the same. They are a box (west, south, east, north) within the
-    square of waking, in squares, map frame, 0 to 1.
-
-    frame : the believed frame. observations : at least one, with their places in Utak's own frame.
-    """
+    """Return the origins for which every observation falls on the square on which it is believed to have fallen."""
     away = np.array([frame.to_map(*observation.place) for observation in observations]).reshape(-1, 2)
     corners = observation_squares(frame, observations)
     west, south = np.maximum((corners - away).max(0), 0.0).tolist()
@@ -296,19 +202,7 @@ def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
 def origin_leeway(
     frame: Frame, observations: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]
 ) -> tuple[float, float, float, float]:
-    """Return how far the true origin may lie from the believed one.
-
-    Parameters
-    ----------
-    frame : the believed frame.
-    observations : all observations.
-    hypotheses : the frame hypotheses that are left. Those that assume the middle of the square restrict nothing.
-
-    Returns
-    -------
-    tuple of float
-        West, south (not above 0), east, north (not below 0), in squares of the map frame; all 0 when it is certain.
-    """
+    """Return how far the true origin may lie from the believed one."""
     west, south, east, north = origin_box(frame, observations)
     boxes = np.array([h.box for h in hypotheses if h.angle == frame.angle and not h.is_centred])
     if len(boxes):
@@ -319,14 +213,7 @@ def origin_leeway(
 
 
 def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
-    """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns.
-
-    That box holds all origins for which every observation falls on the square on which it is believed to have fallen.
-    The hypotheses, 121 with 11 points a side, have the angle of `frame`, a box that is one point (x, y, x, y) in
-    squares, map frame, and a prior cost of 0; they come column by column from the west, each from south to north.
-
-    observations : at least one, with their places in Utak's own frame.
-    """
+    """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns."""
     west, south, east, north = origin_box(frame, observations)
     steps = (np.arange(ORIGIN_GRID) + 0.5) / ORIGIN_GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
@@ -334,14 +221,7 @@ def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[Fram
 
 
 def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool:
-    """Return whether less room is left for the origin than so many observations leave by chance.
-
-    Each observation cuts either side of the square of waking in two, anywhere. Then a side of the true part is shorter
-    than CRAMPED_SIDE / observations about once in two hundred times. An observation made elsewhere than believed is
-    likelier. False for no hypotheses, and where one assumes the middle of the square.
-
-    hypotheses : those that are left, with their boxes of origins. observations : the number of observations.
-    """
+    """Return whether less room is left for the origin than so many observations leave by chance."""
     if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
     west, south, east, north = np.array([hypothesis.box for hypothesis in hypotheses]).T
@@ -349,33 +229,14 @@ def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool
 
 
 def grid_cell_size(points: Sequence[FrameHypothesis]) -> tuple[float, float]:
-    """Return the width and height, in squares, of the cell for which each of some points of an origin grid stands.
-
-    It is 0 along an axis in which all points lie on one line. points : exact origins, at least one.
-    """
+    """Return the width and height, in squares, of the cell for which each of some points of an origin grid stands."""
     lines = [np.unique(np.round([point.box[axis] for point in points], 9)) for axis in (0, 1)]
     width, height = (float(np.diff(line).min()) if len(line) > 1 else 0.0 for line in lines)
     return width, height
 
 
 def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> list[Frame]:
-    """Return the frames of some hypotheses, the likeliest first.
-
-    A frame is an angle in degrees and an origin (x, y) in the square of waking: the middle of the square where the
-    hypothesis allows it, else the middle of its box. The order: the best map prior, the believed frame, Utak's own
-    axes, then orientations from the median outwards. Of one orientation the frame with the most room for the origin
-    comes first.
-
-    Parameters
-    ----------
-    hypotheses : those that are left.
-    believed : the believed frame.
-
-    Returns
-    -------
-    list of Frame
-        Without repetitions; [] for no hypotheses.
-    """
+    """Return the frames of some hypotheses, the likeliest first."""
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2
     outwards = sorted(angles, key=lambda angle: (angle != 0, abs(angles.index(angle) - middle)))
@@ -386,12 +247,7 @@ def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> lis
 
 
 def _split_interval(low: float, high: float, at: float) -> list[tuple[float, float]]:
-    """Return an interval cut in two at a point inside it, the part that holds the middle of a square (0.5) first.
-
-    The interval alone when the point does not lie inside it.
-
-    low, high : its ends, in squares.
-    """
+    """Return an interval cut in two at a point inside it, the part that holds the middle of a square (0.5) first."""
     if not low < at < high:
         return [(low, high)]
     parts = [(low, at), (at, high)]

@@ -45,25 +45,10 @@ SquaresKey = tuple[int, bytes]
 
 
 class MapDescription:
-    """A map, and the simplest completion of it that was drawn so far, scene by scene.
-
-    A completion is a map that agrees with all counts, with every square free or occupied. A scene is a part of the map
-    that is independent of all others. Costs are for edges and corners of what is occupied, and for wrong counts.
-
-    Attributes
-    ----------
-    price : the log odds (natural logarithm) against that completion: its description length. Infinite before the first
-        draw.
-    """
+    """A map, and the simplest completion of it that was drawn so far, scene by scene."""
 
     def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None) -> None:
-        """Begin with no completion.
-
-        Parameters
-        ----------
-        occupancy : the map; it is not changed.
-        drawn : completions of scenes of this or other maps, which are not drawn once more; new ones are added to it.
-        """
+        """Begin with no completion."""
         self._view = occupancy.view()
         self._ground = given_squares(self._view)
         self._scenes = list(scenes(self._view, self._ground))
@@ -74,12 +59,7 @@ class MapDescription:
         self.price = np.inf
 
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
-        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm).
-
-        A completion is a map that agrees with all counts; its price is the log odds against it.
-
-        effort : the number of completions of each scene (an independent part of the map), and of sweeps over each.
-        """
+        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm)."""
         for number, scene in enumerate(self._scenes):
             key = (*scene.told(self._view), *effort, self._rounds)
             if key not in self._drawn:
@@ -94,11 +74,7 @@ class MapDescription:
         return self.price
 
     def cost(self, edge: float) -> float:
-        """Return the log odds (natural logarithm) against the simplest completion; nothing is drawn.
-
-        edge : the cost of an edge between an occupied and a free square: EDGE_COST for the whole price, 0 for all but
-        edges.
-        """
+        """Return the log odds (natural logarithm) against the simplest completion; nothing is drawn."""
         return LOG_ODDS_PER_COST * float(costs(self._image[None], self._ground, self._view.counts, edge)[0])
 
     @property
@@ -109,16 +85,7 @@ class MapDescription:
 
 
 def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, OccupancyImage]:
-    """Return the cost of the simplest of some completions of a scene, and that completion.
-
-    The cost is as of `geometry.counts.gibbs.costs`; the completion is (h, w) int8, 1 where a square is occupied.
-
-    Parameters
-    ----------
-    scene : the part of the map to be drawn.
-    effort : the number of completions, and of sweeps over each.
-    seed : of the random numbers.
-    """
+    """Return the cost of the simplest of some completions of a scene, and that completion."""
     number, sweeps = effort
     first = np.repeat(scene.first[None], number, axis=0)
     images = pictures(scene.ground, scene.counts, first, sweeps, START_INVERSE_TEMPERATURE, seed)
@@ -127,57 +94,26 @@ def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, 
 
 
 class FrameTrial:
-    """The map of some observations in a frame, with the prior of its orientation.
-
-    Attributes
-    ----------
-    description : the map, and the simplest completion of it that was drawn so far.
-    """
+    """The map of some observations in a frame, with the prior of its orientation."""
 
     def __init__(self, frame: Frame, observations: Sequence[Observation]) -> None:
-        """Begin with no completion.
-
-        frame : that to map in. observations : those that are mapped, with their places in Utak's own frame.
-        """
+        """Begin with no completion."""
         self.description = MapDescription(remap(frame, frame, observations, ()).occupancy)
         self._oblique = OBLIQUE_COST * (frame.angle != 0)
 
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
-        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm).
-
-        A completion is a map that agrees with all counts, with every square free or occupied; its price is the log odds
-        against it, the less the better. The orientation is not counted.
-
-        effort : the number of completions of each scene (an independent part of the map), and of sweeps over each.
-        """
+        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm)."""
         return self.description.draw(effort)
 
     @property
     def odds(self) -> float:
-        """Return the log odds (natural logarithm) against the frame, by its map and its orientation; less is better.
-
-        It is infinite before the first draw.
-        """
+        """Return the log odds (natural logarithm) against the frame, by its map and its orientation; less is better."""
         return self.description.price + self._oblique
 
 
 def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
-    """Return by how much each map costs more than the best one, in log odds (natural logarithm).
-
-    The cost of a map is that of its simplest completion drawn (a map that agrees with all counts): its corners and
-    wrong counts. Edges are not counted, for the maps may differ in size. More completions are drawn of the maps that
-    may be best.
-
-    Parameters
-    ----------
-    maps : each with the log odds against it by everything else. They decide only which maps are drawn once more; they
-        are no part of the result.
-
-    Returns
-    -------
-    list of float
-        In the same order; 0 for the best one. [] for no maps.
-    """
+    """Return by how much each map costs more than the best one, in log odds (natural logarithm)."""
+    # Edges are not counted, for the maps may differ in size.
     for description, _ in maps:
         description.draw()
     for _ in range(MAX_REDRAWS):
@@ -190,40 +126,17 @@ def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
 
 
 class AlikeHypotheses(NamedTuple):
-    """Hypotheses of one orientation with the same map: their observations fell on the same squares.
+    """Hypotheses of one orientation with the same map: their observations fell on the same squares."""
 
-    Attributes
-    ----------
-    frame : the likeliest of their frames.
-    prior_cost : the least of their prior costs before, in log odds.
-    against : log odds against having woken in that part of the square; 0 for the middle or a single point.
-    """
-
-    frame: Frame
-    prior_cost: float
-    against: float
+    frame: Frame  # the likeliest of their frames
+    prior_cost: float  # the least of their prior costs before, in log odds
+    against: float  # log odds against having woken in that part of the square; 0 for the middle or a single point
 
 
 def weigh_hypotheses(
     hypotheses: Sequence[FrameHypothesis], observations: Sequence[Observation]
 ) -> tuple[FrameHypothesis, ...]:
-    """Return the same hypotheses (angle and box of origins unchanged), each with its prior cost relative to the best.
-
-    The prior cost is the log odds (natural logarithm) against the simplest map in that frame, its orientation and its
-    origin. Of hypotheses weighed before, only the likely ones and the orientations beside the best one are weighed
-    again.
-
-    Parameters
-    ----------
-    hypotheses : those that are left, with their prior costs so far.
-    observations : those by which they are weighed, the new one last.
-
-    Returns
-    -------
-    tuple of FrameHypothesis
-        In the same order. The best one has a prior cost of 0. Where others are weighed anew, one that is not has
-        UNTRIED_COST at least. Where only one map is likely, nothing is drawn.
-    """
+    """Return the same hypotheses (angle and box of origins unchanged), each with its prior cost above the best."""
     keys = [_squares_key(hypothesis, observations) for hypothesis in hypotheses]
     same: dict[SquaresKey, list[FrameHypothesis]] = {}
     for hypothesis, key in zip(hypotheses, keys, strict=True):
@@ -247,12 +160,7 @@ def weigh_hypotheses(
 def _odds(
     trials: Mapping[SquaresKey, FrameTrial], alike: Mapping[SquaresKey, AlikeHypotheses]
 ) -> dict[SquaresKey, float]:
-    """Return the log odds (natural logarithm) against each trial, by key, origin included; the less the better.
-
-    Those close to the best one are drawn once more before.
-
-    trials, alike : by the same keys (see `_squares_key`); more completions are drawn in `trials`.
-    """
+    """Return the log odds (natural logarithm) against each trial, by key, origin included; the less the better."""
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
     close = [key for key in odds if odds[key] <= best + CLOSE_ODDS]
@@ -263,25 +171,14 @@ def _odds(
 
 
 def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation]) -> SquaresKey:
-    """Return what hypotheses of the same map share: (angle in degrees, squares relative to the last one, as bytes).
-
-    The squares are those of the map frame on which the observations were made.
-
-    hypothesis : its likeliest frame is asked.
-    """
+    """Return what hypotheses of the same map share: (angle in degrees, squares relative to the last one, as bytes)."""
     squares = observation_squares(hypothesis.frame, observations)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
 
 
 def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
-    """Return hypotheses of the same map, at least one, as one: the likeliest of their frames, and what is against it.
-
-    The frame is of the one that names the middle of the square of waking, else of the one with the largest box. What is
-    against it are log odds (natural logarithm) against an origin in their boxes together: the smaller the area the
-    more; 0 for the middle, or for exact origins.
-
-    same : hypotheses of one angle by which all observations fall on the same squares.
-    """
+    """Return hypotheses of the same map, at least one, as one."""
+    # The likeliest of their frames, and what is against it.
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
     against = 0.0 if likeliest.is_centred or not area else OFF_CENTRE_COST - math.log(area)
@@ -289,12 +186,7 @@ def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
 
 
 def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[SquaresKey]:
-    """Return the keys of the hypotheses that are worth weighing again, the likeliest first.
-
-    Those are of a prior cost near to the least one, or of an angle within 2 degrees of the best.
-
-    alike : by key (see `_squares_key`). least : the least prior cost, in log odds.
-    """
+    """Return the keys of the hypotheses that are worth weighing again, the likeliest first."""
     best = [angle for (angle, _), one in alike.items() if one.prior_cost == least]
     near = (
         key
@@ -308,14 +200,7 @@ def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[S
 def _first_trials(
     alike: Mapping[SquaresKey, AlikeHypotheses], observations: Sequence[Observation]
 ) -> dict[SquaresKey, FrameTrial]:
-    """Return trials, by key, of the frames that may be best: the likeliest origin of each orientation, then others.
-
-    A trial is the map in a frame with its simplest completion so far (a map that agrees with all counts), and the log
-    odds against it; completions were drawn of all of them. At most one frame an orientation, and MAX_REWEIGHED_FRAMES
-    (8) others, of the best orientations first.
-
-    alike : by key (angle in degrees, and the squares of all observations as bytes). observations : those to map.
-    """
+    """Return trials, by key, of the frames that may be best: the likeliest origin of each orientation, then others."""
     parts: dict[int, list[SquaresKey]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
         parts.setdefault(key[0], []).append(key)
@@ -328,12 +213,7 @@ def _first_trials(
 
 
 def _trial(one: AlikeHypotheses, observations: Sequence[Observation]) -> FrameTrial:
-    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT.
-
-    Its `odds` are the log odds (natural logarithm) against the frame by its map and its orientation.
-
-    one : hypotheses of one map; its likeliest frame is tried. observations : those to map.
-    """
+    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT."""
     trial = FrameTrial(one.frame, observations)
     trial.draw()
     return trial
@@ -343,21 +223,12 @@ class _Competition:
     """Trials of one frame of each orientation; the more effort is spent on a frame the likelier it is."""
 
     def __init__(self, frames: Mapping[int, Frame], observations: Sequence[Observation]) -> None:
-        """Begin with no trial.
-
-        frames : by orientation in degrees. observations : those by which the frames are tried.
-        """
+        """Begin with no trial."""
         self._frames, self._observations = frames, observations
         self._trials: dict[int, FrameTrial] = {}
 
     def run(self) -> dict[int, FrameTrial]:
-        """Return the trials of the frames that may be the best, by orientation; all of them were drawn.
-
-        An orientation is by how many degrees Utak's own frame is turned against the map frame, counter-clockwise. The
-        trials come in the order in which they were tried, not by their odds. A trial holds the map in the frame and the
-        log odds (natural logarithm) against it. Only orientations near 0 are there when the map at 0 has straight
-        sides.
-        """
+        """Return the trials of the frames that may be the best, by orientation; all of them were drawn."""
         trials = self._trials
         self._enter([0])
         if 0 in trials and trials[0].draw() and trials[0].description.bend_ratio < MAX_STRAIGHT_BENDS:
@@ -371,23 +242,14 @@ class _Competition:
         return trials
 
     def _enter(self, angles: Iterable[int]) -> None:
-        """Try some orientations (degrees) roughly; those without a frame and those tried before are skipped.
-
-        angles : counter-clockwise positive, as of `Frame.angle`; tried in this order.
-        """
+        """Try some orientations (degrees) roughly; those without a frame and those tried before are skipped."""
         for angle in angles:
             if angle in self._frames and angle not in self._trials:
                 self._trials[angle] = FrameTrial(self._frames[angle], self._observations)
                 self._trials[angle].draw(ROUGH_EFFORT)
 
     def _leading(self, most: int, behind: float) -> list[int]:
-        """Return the best orientations in degrees, the best first, at least one.
-
-        Parameters
-        ----------
-        most : their greatest number.
-        behind : log odds by which they may be behind the best one; a quarter of the best one's price is always allowed.
-        """
+        """Return the best orientations in degrees, the best first, at least one."""
         trials = self._trials
         ordered = sorted(trials, key=lambda angle: trials[angle].odds)[:most]
         best = trials[ordered[0]]

@@ -43,36 +43,21 @@ QUICK_CHECK_OBSERVATIONS = 3  # observations, about, that are compared before al
 
 
 class WalkCorrection(NamedTuple):
-    """A shift of all observations from one on, and of the objects that were seen or moved from there.
+    """A shift of all observations from one on, and of the objects that were seen or moved from there."""
 
-    Attributes
-    ----------
-    since : the number of the first observation that is shifted; the first of all has the number 0.
-    shift : from the believed place to the corrected one, (east, north) in squares, Utak's own frame.
-    seen : objects that were first held since, by name, each with the shift of where it lies and lay, same frame and
-        unit.
-    in_hand : the name of the object in hand on the motion that is corrected; None when there was none.
-    """
-
-    since: int
-    shift: Position
+    since: int  # the number of the first observation that is shifted; the first of all has the number 0
+    shift: Position  # from the believed place to the corrected one, (east, north) in squares, Utak's own frame
+    # Objects that were first held since, by name, each with the shift of where it lies and lay, same frame and unit
     seen: tuple[tuple[str, Position], ...] = ()
+    # The name of the object in hand on the motion that is corrected; None when there was none
     in_hand: str | None = None
 
     def place(self, place: Position) -> Position:
-        """Return a place of Utak since the motion as corrected, (east, north) in squares, Utak's own frame.
-
-        place : as believed, same frame.
-        """
+        """Return a place of Utak since the motion as corrected, (east, north) in squares, Utak's own frame."""
         return add(place, self.shift)
 
     def observations(self, observations: Sequence[Observation]) -> list[Observation]:
-        """Return all observations, oldest first, with corrected places and object poses; earlier ones are unchanged.
-
-        As many as given, in the same order; their counts stay, places and poses are in squares, Utak's own frame.
-
-        observations : all, oldest first, as believed.
-        """
+        """Return all observations, oldest first, with corrected places and object poses; earlier ones are unchanged."""
         since = [
             observation._replace(place=self.place(observation.place), moved=tuple(map(self._pose, observation.moved)))
             for observation in observations[self.since :]
@@ -80,30 +65,18 @@ class WalkCorrection(NamedTuple):
         return [*observations[: self.since], *since]
 
     def held_objects(self, held_objects: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
-        """Return all held objects, by name, where they lie and lay as corrected; same frame and order as given.
-
-        Outlines (shapely Polygons, in squares) are shifted; an object that the correction does not shift is the same.
-
-        held_objects : by name, map frame. frame : that map frame.
-        """
+        """Return all held objects, by name, where they lie and lay as corrected; same frame and order as given."""
         return {name: self._corrected_object(held, frame) for name, held in held_objects.items()}
 
     def _pose(self, pose: ObjectPose) -> ObjectPose:
-        """Return the corrected pose of an object at an observation since the motion, Utak's own frame.
-
-        Its `middle` is shifted, and `taken` (where it was first held), both (east, north) in squares; its rotation
-        stays. Where the object in hand was first held stays as it is.
-        """
+        """Return the corrected pose of an object at an observation since the motion, Utak's own frame."""
         aside = self._aside(pose.name)
         if pose.name != self.in_hand:
             pose = pose._replace(taken=add(pose.taken, aside))
         return pose._replace(middle=add(pose.middle, aside))
 
     def _corrected_object(self, held: HeldObject, frame: Frame) -> HeldObject:
-        """Return an object where it lies as corrected, map frame of `frame`; the same object when it is not shifted.
-
-        held : as believed, map frame of `frame`.
-        """
+        """Return an object where it lies as corrected, map frame of `frame`; the same object when it is not shifted."""
         aside = Translate(*frame.to_map(*self._aside(held.name)))
         if not any(aside):
             return held
@@ -111,29 +84,18 @@ class WalkCorrection(NamedTuple):
         return replace(held.lying(aside.carry(held.polygon), held.slack), first=first, seen_on=None)
 
     def _aside(self, name: str) -> Position:
-        """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted.
-
-        name : of the object.
-        """
+        """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted."""
         return self.shift if name == self.in_hand else dict(self.seen).get(name, (0.0, 0.0))
 
 
 class ReestimatedWalk(NamedTuple):
-    """A re-estimated motion: a frame, and the correction of a motion with which observations agree.
+    """A re-estimated motion: a frame, and the correction of a motion with which observations agree."""
 
-    Attributes
-    ----------
-    hypothesis : of the frame.
-    correction : of all observations since that motion.
-    contact_known : whether something known stands where the motion was blocked then.
-    residual : number of fields that contradict it, over all observations.
-    newest : where the newest observation was made then, (east, north) in squares, Utak's own frame.
-    """
-
-    hypothesis: FrameHypothesis
-    correction: WalkCorrection
-    contact_known: bool
-    residual: int
+    hypothesis: FrameHypothesis  # of the frame
+    correction: WalkCorrection  # of all observations since that motion
+    contact_known: bool  # whether something known stands where the motion was blocked then
+    residual: int  # number of fields that contradict it, over all observations
+    # Where the newest observation was made then, (east, north) in squares, Utak's own frame
     newest: Position = (0.0, 0.0)
 
 
@@ -143,24 +105,11 @@ def reestimate_walk(
     observations: Sequence[Observation],
     prefixes: Callable[[Frame], ReplayPrefixes] | None = None,
 ) -> Iterator[ReestimatedWalk]:
-    """Yield other ends of a motion, each with the frame in which no observation contradicts another.
-
-    What is yielded holds the frame hypothesis, the shift of all observations since the motion, (east, north) in
-    squares, Utak's own frame, whether something known blocked it, the number of fields, over all observations,
-    that contradict the map (`residual`), and where the newest observation was made, (east, north) in squares, Utak's
-    own frame. Frame by frame, in the order of the hypotheses (the 90 of the least prior cost); in
-    each frame in the order of the way. Until it was blocked the motion entered no occupied square, and it was blocked
-    before no free one. Where a contact with something known is possible in a frame, contacts with open squares are left
-    out. Not yielded: what is believed already, and a contact of the newest motion with something unknown in the
-    believed frame. What is yielded may still have a residual against the map.
-
-    Parameters
-    ----------
-    motion : a motion with an empty hand, with the frame hypotheses to try.
-    believed : the believed frame.
-    observations : all, oldest first, at their believed places in Utak's own frame; the newest where it was commanded.
-    prefixes : returns the replays of the first observations in a frame; made anew for each frame when None.
-    """
+    """Yield other ends of a motion, each with the frame in which no observation contradicts another."""
+    # What is yielded holds the frame hypothesis, the shift of all observations since the motion, (east, north) in
+    # squares, Utak's own frame, whether something known blocked it, the number of fields, over all observations, that
+    # contradict the map (`residual`), and where the newest observation was made, (east, north) in squares, Utak's own
+    # frame.
     newest = motion.number == len(observations) - 1
     for hypothesis in _likeliest_hypotheses(motion.hypotheses):
         frame = hypothesis.frame
@@ -172,13 +121,7 @@ def reestimate_walk(
 
 
 def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
-    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more.
-
-    Each is an angle in degrees, a box of origins in squares, map frame, and a prior cost. Of equal costs the first
-    given are taken.
-
-    hypotheses : each with its prior cost in log odds; the less the likelier.
-    """
+    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more."""
     if len(hypotheses) <= MAX_REESTIMATED_HYPOTHESES:
         return hypotheses
     numbers = sorted(range(len(hypotheses)), key=lambda number: hypotheses[number].prior_cost)
@@ -191,19 +134,9 @@ def _other_ends(
     observations: Sequence[Observation],
     begun: ReplayPrefixes,
 ) -> Iterator[ReestimatedWalk]:
-    """Yield the other ends of one motion in one frame, with contacts known and unknown, in the order of the way.
-
-    Each holds the shift of all observations since the motion and where the newest was made, (east, north) in squares,
-    Utak's own frame, and the number of fields that contradict it. An end comes once for each square from which the
-    newest observation may be made then.
-
-    Parameters
-    ----------
-    motion : with an empty hand.
-    hypothesis : of the frame.
-    observations : all, oldest first, at their believed places; the newest where it was commanded.
-    begun : the replays of the first observations in that frame.
-    """
+    """Yield the other ends of one motion in one frame, with contacts known and unknown, in the order of the way."""
+    # Each holds the shift of all observations since the motion and where the newest was made, (east, north) in squares,
+    # Utak's own frame, and the number of fields that contradict it.
     frame, number = hypothesis.frame, motion.number
     believed, walk = observations[number].place, WalkInFrame(motion, frame, observations)
     judged: dict[bytes, RemappedMap | None] = {}
@@ -233,19 +166,7 @@ def _other_ends(
 def reestimate_two_walks(
     motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation]
 ) -> Iterator[ReestimatedWalk]:
-    """Yield ends of an earlier motion and of the newest one, both blocked by something known, without contradictions.
-
-    The correction is that of the earlier motion, a shift (east, north) in squares, Utak's own frame; `newest` is where
-    the newest one ended, same frame. The residual is 0. In the order of the way of the earlier motion, then of the
-    newest. A motion that goes on against what blocked the one before it does not move at all.
-
-    Parameters
-    ----------
-    motion : the earlier motion, with an empty hand.
-    newest : the newest motion, with an empty hand.
-    hypothesis : of the frame.
-    observations : all, oldest first, at their believed places in Utak's own frame; the newest where it was commanded.
-    """
+    """Yield ends of an earlier motion and of the newest one, both blocked by what is known, without contradictions."""
     frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
     walk = WalkInFrame(motion, frame, observations)
     against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
@@ -274,23 +195,7 @@ def remap_if_consistent(
     begun: MapReplay | None = None,
     only_whether: bool = True,
 ) -> RemappedMap | None:
-    """Return the map of all observations in a frame; None when two of the last observations contradict each other.
-
-    The result holds the occupancy map, the held objects where they lie after the last observation (by name), both map
-    frame of `frame`, and `residual`, the number of fields that contradict the frame over all observations; it may be
-    above 0 all the same. It is a new map; the arguments are not changed.
-
-    Parameters
-    ----------
-    frame : the frame to map in.
-    observations : all, oldest first, at their places in Utak's own frame.
-    held_objects : all objects that were ever held, in that frame.
-    unsettled : parts of the table (discs, Utak's own frame) where observations need not agree.
-    recent : how many of the last observations are compared.
-    begun : a replay of the first of the observations in that frame, which is copied; None to begin with an empty map.
-    only_whether : stop at the first observation that contradicts the frame: the result has no held objects then, a map
-        of the observations up to it, and a residual that is a lower bound. False: the map of all, and the whole number.
-    """
+    """Return the map of all observations in a frame; None when two of the last observations contradict each other."""
     squares = observation_squares(frame, observations)
     if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
         return None
@@ -304,16 +209,7 @@ def _are_consistent(
     unsettled: Sequence[UnsettledDisc] = (),
     recent: int = MAX_CHECKED_OBSERVATIONS + 1,
 ) -> bool:
-    """Return whether none of the last observations contradicts another.
-
-    Parameters
-    ----------
-    frame : the frame in question.
-    squares : (n, 2), column and row of the map frame on which each observation was made, oldest first.
-    ranges : (n, 160, 2), least and greatest count of occupied squares under each field.
-    unsettled : parts of the table (discs, Utak's own frame) that are not compared.
-    recent : how many of the last observations are compared.
-    """
+    """Return whether none of the last observations contradicts another."""
     squares, ranges = squares[-recent:], ranges[-recent:]
     apart = len(squares) // QUICK_CHECK_OBSERVATIONS
     if apart > 1 and count_contradictions_at(frame, squares[::-apart], ranges[::-apart], unsettled):  # with the newest
@@ -322,37 +218,19 @@ def _are_consistent(
 
 
 class WalkEnd(NamedTuple):
-    """A possible end of a motion.
+    """A possible end of a motion."""
 
-    Attributes
-    ----------
-    place : (east, north) in squares, Utak's own frame.
-    progress : how far the motion had come: the number of grid lines crossed before it, or, with an object in hand, the
-        part of the motion, 0 to 1.
-    """
-
-    place: Position
+    place: Position  # (east, north) in squares, Utak's own frame
+    # How far the motion had come: the number of grid lines crossed before it, or, with an object in hand, the part of
+    # the motion, 0 to 1
     progress: float
 
 
 class WalkInFrame:
-    """A motion with an empty hand, in a frame.
-
-    Attributes
-    ----------
-    ends : where it may have been blocked, in the order of the way (each grid line once for each square from which the
-        observation may be made), and last its commanded end.
-    """
+    """A motion with an empty hand, in a frame."""
 
     def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
-        """Find the ends of a motion.
-
-        Parameters
-        ----------
-        motion : with an empty hand; at least one observation was made before it.
-        frame : the frame whose grid lines may stop it.
-        observations : all, oldest first, at their believed places in Utak's own frame.
-        """
+        """Find the ends of a motion."""
         x, y = observations[motion.number - 1].place
         self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_map(*motion.shift))
         halts = [
@@ -363,16 +241,8 @@ class WalkInFrame:
         self.ends = (*halts, WalkEnd((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square] = frozenset()) -> int:
-        """Return the state of the square that blocked the motion at `end`: OCCUPIED, OPEN or FREE (1, -1 or 0).
-
-        FREE if one before it was occupied, so that the motion cannot have come so far; OPEN at the commanded end.
-
-        Parameters
-        ----------
-        end : one of `ends`.
-        occupancy : the map in that frame.
-        things : squares (column, row) that were occupied then by objects moved since, map frame.
-        """
+        """Return the state of the square that blocked the motion at `end`: OCCUPIED, OPEN or FREE (1, -1 or 0)."""
+        # FREE if one before it was occupied, so that the motion cannot have come so far;
         at = int(end.progress)
         entered = [crossing.entered for crossing in self._met[: at + 1]]
         states = (OCCUPIED if square in things else _square_state(occupancy, square) for square in entered)
@@ -382,19 +252,11 @@ class WalkInFrame:
 
 
 def _square_state(occupancy: OccupancyMap, square: Square) -> int:
-    """Return the state of a square (column, row) of the map frame: OCCUPIED, OPEN or FREE.
-
-    The square must lie within the arrays of the map.
-
-    occupancy : the map.
-    """
+    """Return the state of a square (column, row) of the map frame: OCCUPIED, OPEN or FREE."""
     row, column = occupancy.index(*square)
     return int(occupancy.state[row, column])
 
 
 def _own_observation_places(place: Position, frame: Frame) -> list[Position]:
-    """Return the places from which the observation at `place` may be made: one for each square that it touches.
-
-    place, result : (east, north) in squares, Utak's own frame.
-    """
+    """Return the places from which the observation at `place` may be made: one for each square that it touches."""
     return [frame.place_to_utak(*view) for view in observation_places(frame.place_from_utak(*place))]

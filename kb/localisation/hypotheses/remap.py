@@ -32,43 +32,26 @@ CORNER_STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lamb
 
 
 class RemappedMap(NamedTuple):
-    """The occupancy map and the held objects in a frame, by all observations.
+    """The occupancy map and the held objects in a frame, by all observations."""
 
-    Attributes
-    ----------
-    occupancy : the map.
-    held_objects : all held objects as they lie after the last observation, by name, map frame.
-    residual : number of fields that contradict the frame, over all observations.
-    incomplete : whether the replay stopped at the first contradiction. Then `held_objects` is empty and `residual` is a
-        lower bound above 0.
-    """
-
-    occupancy: OccupancyMap
+    occupancy: OccupancyMap  # the map
+    # All held objects as they lie after the last observation, by name, map frame
     held_objects: Mapping[str, HeldObject]
-    residual: int
+    residual: int  # number of fields that contradict the frame, over all observations
+    # Whether the replay stopped at the first contradiction. Then `held_objects` is empty and `residual` is a lower
+    # bound above 0.
     incomplete: bool = False
 
 
 def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
-    """Return where an object lies, and where it lay when it was first held, in Utak's own frame.
-
-    Both as the centroid of its outline, (east, north) in squares, with the degrees by which it was turned since it was
-    first held (counter-clockwise positive), and its tolerance `slack` in squares.
-
-    held : map frame. frame : the frame that relates this map frame to Utak's own.
-    """
+    """Return where an object lies, and where it lay when it was first held, in Utak's own frame."""
+    # Both as the centroid of its outline, (east, north) in squares, with the degrees by which it was turned since it
+    # was first held (counter-clockwise positive), and its tolerance `slack` in squares.
     return ObjectPose(held.name, _centroid(held.polygon, frame), held.turned, held.slack, _centroid(held.first, frame))
 
 
 class MapReplay:
-    """Observations integrated one after the other into a new map, in a frame.
-
-    Attributes
-    ----------
-    new : the frame of the new map.
-    old : the frame in which the held objects are given.
-    number : how many observations are integrated; they are the first ones.
-    """
+    """Observations integrated one after the other into a new map, in a frame."""
 
     def __init__(self, new: Frame, old: Frame) -> None:
         """Begin with an empty map. new : the frame of the new map. old : the frame in which held objects are given."""
@@ -89,20 +72,7 @@ class MapReplay:
         stop: int,
         only_whether: bool = False,
     ) -> "MapReplay":
-        """Integrate the observations before number `stop` that are not integrated yet, and return this replay itself.
-
-        Its map, in the new frame, then holds the first `number` observations; `contradicted` tells whether any of them
-        contradicts it.
-
-        Parameters
-        ----------
-        observations : all, oldest first, with their places in Utak's own frame; those integrated already must be the
-            first of them.
-        held_objects : all objects that were ever held, by name, old frame.
-        stop : how many observations are to be integrated then.
-        only_whether : stop after the first observation that contradicts the frame, so that `number` may stay below
-            `stop`; False integrates all of them, contradictions included.
-        """
+        """Integrate the observations before number `stop` not integrated yet, and return this replay itself."""
         for number in range(self.number, stop):
             if only_whether and self._residual:
                 break
@@ -127,19 +97,7 @@ class MapReplay:
     def finish(
         self, observations: Sequence[Observation], held_objects: Mapping[str, HeldObject], only_whether: bool = False
     ) -> RemappedMap:
-        """Integrate the rest of the observations and return the map. The replay cannot go on afterwards.
-
-        The result holds the map, all held objects where they lie after the last observation (by name), both in the new
-        frame, and the number of fields that contradict that frame, over all observations.
-
-        Parameters
-        ----------
-        observations : all, oldest first, with their places in Utak's own frame; those integrated already must be the
-            first of them.
-        held_objects : all objects that were ever held, by name, old frame.
-        only_whether : stop at the first contradiction; the result has no held objects then, and its residual is a lower
-            bound above 0. False: the map of all observations, whatever contradicts.
-        """
+        """Integrate the rest of the observations and return the map. The replay cannot go on afterwards."""
         self.advance(observations, held_objects, len(observations), only_whether)
         if only_whether and self._residual:
             return RemappedMap(self._occupancy, {}, self._residual, incomplete=True)
@@ -151,10 +109,7 @@ class MapReplay:
         return RemappedMap(self._occupancy, now, self._residual)
 
     def _take(self, taken: Iterable[HeldObject], number: int) -> None:
-        """Declare floor in the map where objects lay that were first held just before observation `number`.
-
-        taken : those objects, old frame; each is remembered as it lay, in the new frame.
-        """
+        """Declare floor in the map where objects lay that were first held just before observation `number`."""
         for held in taken:
             lay = self._taken[held.name] = _first_held(held, self.new, self.old, self._occupancy)
             patch = lay.possible
@@ -170,32 +125,13 @@ def remap(
     begun: MapReplay | None = None,
     only_whether: bool = False,
 ) -> RemappedMap:
-    """Return the map and the held objects in another frame; the arguments are not changed.
-
-    The result holds a new occupancy map, all held objects where they lie after the last observation (by name), both map
-    frame of `new`, and the number of fields that contradict that frame, over all observations.
-
-    Parameters
-    ----------
-    new : the frame to map in.
-    old : the frame in which the held objects are given.
-    observations : all observations, oldest first, with their places in Utak's own frame.
-    held_objects : all objects that were ever held, old frame.
-    begun : a replay of the first of the observations, with the same objects; it is copied. None to begin with an empty
-        map.
-    only_whether : stop at the first observation that contradicts the frame: the result has no held objects then, and a
-        residual that is a lower bound above 0. False: the map of all observations, and the whole number.
-    """
+    """Return the map and the held objects in another frame; the arguments are not changed."""
     replay = MapReplay(new, old) if begun is None else begun.copy()
     return replay.finish(observations, {held.name: held for held in held_objects}, only_whether)
 
 
 class RemapCache:
-    """The maps of all frames that were asked for.
-
-    Frames in which every observation falls on the same squares have the same map. It is replayed for the first of them
-    only; for the others just the objects are shifted.
-    """
+    """The maps of all frames that were asked for."""
 
     def __init__(
         self,
@@ -204,40 +140,20 @@ class RemapCache:
         observations: Sequence[Observation],
         held_objects: Mapping[str, HeldObject],
     ) -> None:
-        """Begin with the map of the believed frame, which is taken to be free of contradictions.
-
-        Parameters
-        ----------
-        frame : the believed frame.
-        occupancy : its map.
-        observations : all, oldest first, with their places in Utak's own frame.
-        held_objects : all held objects in the believed frame, by name.
-        """
+        """Begin with the map of the believed frame, which is taken to be free of contradictions."""
         self._frame, self._observations, self._held_objects = frame, observations, held_objects
         believed = RemappedMap(occupancy, held_objects, 0)
         self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._key(frame): (None, believed)}
         self._by_frame: dict[Frame, RemappedMap] = {}
 
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
-        """Return the map and the held objects in a frame; the map must not be changed, for it is kept.
-
-        The result holds the occupancy map, all held objects where they lie now (by name), both map frame of `frame`,
-        and `residual`, the number of fields that contradict it; 0 in the believed frame.
-
-        only_whether : ask only whether anything contradicts the frame; if something does, the result may have no held
-            objects and too small a residual, but not 0. False: always complete.
-        """
+        """Return the map and the held objects in a frame; the map must not be changed, for it is kept."""
         if frame not in self._by_frame or (self._by_frame[frame].incomplete and not only_whether):
             self._by_frame[frame] = self._found(frame, only_whether)
         return self._by_frame[frame]
 
     def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
-        """Return the map of a frame, and the held objects in it, replayed or shifted from a frame of the same squares.
-
-        With them the number of fields that contradict the frame. All in the map frame of `frame`.
-
-        only_whether : whether an incomplete map, which ends at the first contradiction, will do.
-        """
+        """Return the map of a frame, and the held objects in it, replayed or shifted from one of the same squares."""
         key = self._key(frame)
         if key not in self._known or (self._known[key][1].incomplete and not only_whether):
             found = remap(
@@ -253,10 +169,7 @@ class RemapCache:
         return under._replace(held_objects=held_objects)
 
     def _key(self, frame: Frame) -> tuple[int, bytes]:
-        """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes).
-
-        frame : the frame in question.
-        """
+        """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes)."""
         return frame.angle, observation_squares(frame, self._observations).tobytes()
 
 
@@ -266,23 +179,12 @@ class ReplayPrefixes:
     def __init__(
         self, frame: Frame, observations: Sequence[Observation], held_objects: Mapping[str, HeldObject]
     ) -> None:
-        """Begin with no observation.
-
-        Parameters
-        ----------
-        frame : that of the map and of the held objects.
-        observations : all, oldest first, with their places in Utak's own frame.
-        held_objects : all held objects in that frame, by name.
-        """
+        """Begin with no observation."""
         self._observations, self._held_objects = observations, held_objects
         self._known = {0: MapReplay(frame, frame)}
 
     def first(self, number: int) -> MapReplay:
-        """Return the replay of the first `number` observations; it is kept, so copy it before going on with it.
-
-        It is the map of these observations alone, in the frame given at first, and tells whether any of them
-        contradicts it (`contradicted`); with 0 the map is empty.
-        """
+        """Return the replay of the first `number` observations; it is kept, so copy it before going on with it."""
         if number not in self._known:
             nearest = max(n for n in self._known if n < number)
             replay = self._known[nearest].copy()
@@ -293,38 +195,18 @@ class ReplayPrefixes:
 
 
 def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
-    """Return a held object for another origin of the frame with which every observation falls on the same squares.
-
-    The object was first held where it was believed to lie, but every turn since was about another point. So its outline
-    (shapely Polygon, squares, map frame of `new`) lies a little aside; all else of it stays.
-
-    held : map frame of `old`. new : the frame of the result.
-    """
+    """Return a held object for another origin of the frame with which every observation falls on the same squares."""
+    # The object was first held where it was believed to lie, but every turn since was about another point.
     return _moved_to(held, held, object_pose(held, old), new)
 
 
 def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
-    """Return a held object where it lay at another time, map frame: its outline turned and shifted to that pose.
-
-    Its tolerance `slack` (squares) is set by the pose, and no squares count as seen full or empty; all else is as now.
-
-    held : where it lies now, map frame. pose : its pose at that time, Utak's own frame. frame : the believed frame.
-    """
+    """Return a held object where it lay at another time, map frame: its outline turned and shifted to that pose."""
     return _moved_to(held, held, pose, frame)
 
 
 def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
-    """Return an object as it lay when it was first held, in the new frame.
-
-    Its outlines `polygon` and `first` (shapely Polygon, squares) are the same, map frame of `new`. It is turned from
-    the old frame, or fitted anew to the map where the two frames differ too much in angle.
-
-    Parameters
-    ----------
-    held : what is known of it now, old frame.
-    new, old : the frames.
-    occupancy : the map of the new frame at that time.
-    """
+    """Return an object as it lay when it was first held, in the new frame."""
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
     middle = new.place_from_utak(*_centroid(held.first, old))
@@ -343,12 +225,7 @@ def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMa
 
 
 def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
-    """Return an outline with its corners on grid corners, shifted to where the map contradicts it least.
-
-    At most one square in each axis from the nearest grid corner; of equal places the nearest.
-
-    occupancy : the map. polygon : shapely Polygon with sides along the grid, map frame, as is the result.
-    """
+    """Return an outline with its corners on grid corners, shifted to where the map contradicts it least."""
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
     lying = [
@@ -358,13 +235,9 @@ def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
 
 
 def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
-    """Return the outline fitted to what was seen about a patch, shapely Polygon, map frame.
-
-    None when too much of it is open, when it goes on beyond the surroundings of the patch, or when no shape fits
-    exactly.
-
-    patch : the squares where the object should lie. occupancy : the map.
-    """
+    """Return the outline fitted to what was seen about a patch, shapely Polygon, map frame."""
+    # None when too much of it is open, when it goes on beyond the surroundings of the patch, or when no shape fits
+    # exactly.
     own = np.pad(patch.mask, FITTED_OUTLINE_MARGIN)
     state = occupancy.window(patch.west - FITTED_OUTLINE_MARGIN, patch.south - FITTED_OUTLINE_MARGIN, own.shape)
     labels = components(state != FREE).labels
@@ -382,11 +255,7 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
 
 
 def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
-    """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it.
-
-    occupancy : the map; squares beyond it count as open. polygon : shapely Polygon, map frame. Squares that share an
-    edge with one of its squares are beside it.
-    """
+    """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it."""
     patch = patch_of_polygon(polygon)
     own = np.pad(patch.mask, 1)
     about = with_edge_neighbours(own)
@@ -395,16 +264,8 @@ def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
 
 
 def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
-    """Return an object at a pose, map frame of `new`: its outline (shapely Polygon, squares) turned and shifted there.
-
-    Parameters
-    ----------
-    taken : the object as it lay when it was first held, new frame; its outline is used.
-    held : all else that is known of it.
-    pose : where it lies, Utak's own frame, if it was first held at `pose.taken`. Where `taken` lay elsewhere, the
-        result is shifted likewise.
-    new : the frame of the result.
-    """
+    """Return an object at a pose, map frame of `new`."""
+    # Its outline (shapely Polygon, squares) turned and shifted there.
     began = np.array([_centroid(taken.first, new)]) - pose.taken
     aside = Rotate(pose.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(pose.middle[0] + float(aside[0]), pose.middle[1] + float(aside[1]))
@@ -413,10 +274,7 @@ def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame)
 
 
 def _placed(polygon: Any, degrees: float, middle: Position) -> Any:
-    """Return a shapely polygon turned by `degrees` (counter-clockwise positive), with its centroid at `middle`.
-
-    polygon, middle : of the same frame, in squares.
-    """
+    """Return a shapely polygon turned by `degrees` (counter-clockwise positive), with its centroid at `middle`."""
     centre = polygon.centroid
     turned = Rotate(degrees, (centre.x, centre.y)).carry(polygon)
     return Translate(middle[0] - centre.x, middle[1] - centre.y).carry(turned)

@@ -23,105 +23,54 @@ MAX_KEPT_WAYS = 1024  # ways whose squares are kept: bounds memory
 
 
 class Crossing(NamedTuple):
-    """A crossing of a grid line by a motion, and the square that is entered there, map frame.
+    """A crossing of a grid line by a motion, and the square that is entered there, map frame."""
 
-    A motion that is blocked there ends on the line, and the observation is made from the square further north and east
-    on the table. How the table is turned is unknown, so it may be either side.
+    # How the table is turned is unknown, so it may be either side.
 
-    Attributes
-    ----------
-    before : the place LINE_DISTANCE (1e-6 squares) this side of the line, as the motion comes; (x, y) in squares.
-    after : the place LINE_DISTANCE beyond it.
-    entered : the square (column, row) beyond, that of `after`.
-    """
-
+    # The place LINE_DISTANCE (1e-6 squares) this side of the line, as the motion comes; (x, y) in squares
     before: Position
-    after: Position
-    entered: Square
+    after: Position  # the place LINE_DISTANCE beyond it
+    entered: Square  # the square (column, row) beyond, that of `after`
 
 
 class MotionHypothesis(NamedTuple):
-    """A straight motion as it was commanded, and where else it may have ended.
+    """A straight motion as it was commanded, and where else it may have ended."""
 
-    Attributes
-    ----------
-    number : of the observation after it; the first observation has the number 0.
-    shift : the commanded motion, (east, north) in squares, Utak's own frame.
-    hypotheses : the frame hypotheses before that observation.
-    blocked : whether it is believed to have been blocked.
-    in_hand : the name of the object in hand; None when there was none.
-    alternative_ends : other ends that agree with that observation, (east, north) in squares, Utak's own frame, each
-        with its probability after the observation.
-    """
-
-    number: int
-    shift: Position
-    hypotheses: tuple[FrameHypothesis, ...]
-    blocked: bool = False
-    in_hand: str | None = None
+    number: int  # of the observation after it; the first observation has the number 0
+    shift: Position  # the commanded motion, (east, north) in squares, Utak's own frame
+    hypotheses: tuple[FrameHypothesis, ...]  # the frame hypotheses before that observation
+    blocked: bool = False  # whether it is believed to have been blocked
+    in_hand: str | None = None  # the name of the object in hand; None when there was none
+    # Other ends that agree with that observation, (east, north) in squares, Utak's own frame, each with its probability
+    # after the observation
     alternative_ends: tuple[tuple[Position, float], ...] = ()
 
     def likely_ends(self, min_chance: float) -> list[Position]:
-        """Return the other ends of a probability above `min_chance`: (east, north) in squares, Utak's own frame.
-
-        In the order of `alternative_ends`, not by probability; [] when none is.
-
-        min_chance : 0 to 1.
-        """
+        """Return the other ends of a probability above `min_chance`: (east, north) in squares, Utak's own frame."""
         return [there for there, chance in self.alternative_ends if chance > min_chance]
 
     def chance_of_end(self, place: Position) -> float | None:
-        """Return the probability of an end at `place`; None when it is no known other end.
-
-        It is the probability (0 to 1) after the observation that followed the motion; of several ends there the
-        greatest. Ends within 4e-6 squares count as the same. place : (east, north) in squares, Utak's own frame.
-        """
+        """Return the probability of an end at `place`; None when it is no known other end."""
         near = (chance for there, chance in self.alternative_ends if math.dist(there, place) < 4 * LINE_DISTANCE)
         return max(near, default=None)
 
 
 def blocked_ends(start: Position, shift: Position) -> tuple[Position, ...]:
-    """Return where a motion may have been blocked: both sides of each grid line on the way, the last line first.
-
-    The start is the last of them. There are none for a motion of length 0.
-
-    Parameters
-    ----------
-    start : where it began, (x, y) in squares, map frame.
-    shift : the commanded motion, (x, y) in squares, map frame.
-
-    Returns
-    -------
-    tuple of (x, y)
-        In squares, map frame, each 1e-6 squares from its grid line.
-    """
+    """Return where a motion may have been blocked: both sides of each grid line on the way, the last line first."""
     lines = reversed(line_crossings(start, shift))
     found = [place for crossing in lines for place in (crossing.after, crossing.before)]
     return (*found, start) if any(shift) else ()
 
 
 def slipped_ends(place: Position) -> tuple[Position, ...]:
-    """Return the places whole squares away from `place`, up to MAX_WALK_SLIP (2) in each axis, the nearest first.
-
-    `place` itself is left out. place : (x, y) in squares, of the frame of the result.
-    """
+    """Return the places whole squares away from `place`, up to MAX_WALK_SLIP (2) in each axis, the nearest first."""
     reach = range(-MAX_WALK_SLIP, MAX_WALK_SLIP + 1)
     offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
     return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)
 
 
 def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
-    """Return where a motion crosses grid lines, in the order of the way; empty where it crosses none.
-
-    One for each line crossed: the places 1e-6 squares before and after it, (x, y) in squares, and the square (column,
-    row) entered, all map frame. Through a corner of squares the motion enters the two squares beside it first, one
-    after the other, and then the one beyond. A line on which the motion begins or ends is not crossed.
-
-    Parameters
-    ----------
-    start : where it began, (x, y) in squares, map frame.
-    shift : the motion, (x, y) in squares, map frame.
-    """
+    """Return where a motion crosses grid lines, in the order of the way; empty where it crosses none."""
     found: list[tuple[float, int, Crossing]] = []
     signs = [math.copysign(LINE_DISTANCE, v) for v in shift]
     for axis in (0, 1):
@@ -142,10 +91,7 @@ def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
 
 @lru_cache(MAX_KEPT_WAYS)
 def squares_passed(start: Position, end: Position) -> tuple[Square, ...]:
-    """Return the squares (column, row) that a straight way leads through by at least MIN_PASSED squares of its length.
-
-    A way along a grid line is in neither of the squares beside it. start, end : (x, y) in squares, map frame.
-    """
+    """Return the squares (column, row) that a straight way crosses by at least MIN_PASSED squares of its length."""
     way, begin = np.subtract(end, start), np.array(start)
     lines = (np.arange(np.floor(min(ab)) + 1, np.ceil(max(ab))) for ab in zip(start, end, strict=True))
     parts = [(line - begin[axis]) / way[axis] for axis, line in enumerate(lines) if way[axis]]
@@ -157,38 +103,20 @@ def squares_passed(start: Position, end: Position) -> tuple[Square, ...]:
 
 
 def snap_to_line(place: Position) -> Position:
-    """Return `place` with each coordinate within 2e-6 squares of a grid line moved onto it.
-
-    A contact stopped the motion there, so the robot is on the line.
-
-    Parameters
-    ----------
-    place : (x, y) in squares, map frame.
-
-    Returns
-    -------
-    tuple of float
-        (x, y) in squares, map frame.
-    """
+    """Return `place` with each coordinate within 2e-6 squares of a grid line moved onto it."""
+    # A contact stopped the motion there, so the robot is on the line.
     x, y = (float(round(v)) if abs(v - round(v)) <= 2 * LINE_DISTANCE else v for v in place)
     return x, y
 
 
 def snap_to_middle(place: Position) -> Position:
-    """Return `place` with each coordinate within 2e-6 squares of the middle of a square moved onto it.
-
-    Motions from beside a grid line to the middle of a square end that near to it. place : (x, y) in squares, map frame.
-    """
+    """Return `place` with each coordinate within 2e-6 squares of the middle of a square moved onto it."""
     x, y = (math.floor(v) + 0.5 if abs(v - math.floor(v) - 0.5) <= 2 * LINE_DISTANCE else v for v in place)
     return x, y
 
 
 def observation_places(place: Position) -> tuple[Position, ...]:
-    """Return the places from which the observation at `place` may be made, one for each square that it touches.
-
-    Within 2e-6 squares of a grid line those are both sides of the line (1e-6 squares from it), at a grid corner all
-    four squares, the south-west one first; else it is `place` alone. All are (x, y) in squares, map frame.
-    """
+    """Return the places from which the observation at `place` may be made, one for each square that it touches."""
     columns, rows = (
         (v,) if abs(v - round(v)) > 2 * LINE_DISTANCE else (round(v) - LINE_DISTANCE, round(v) + LINE_DISTANCE)
         for v in place
@@ -197,10 +125,7 @@ def observation_places(place: Position) -> tuple[Position, ...]:
 
 
 def entered_square(place: Position, towards: Position) -> Square:
-    """Return the square (column, row) that a motion from `place` towards a point was about to enter, map frame.
-
-    It is the one that holds the point 1 square ahead; where both points are the same, it is the square of `place`.
-    """
+    """Return the square (column, row) that a motion from `place` towards a point was about to enter, map frame."""
     away = math.dist(place, towards) or 1.0
     ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
     return math.floor(ahead[0]), math.floor(ahead[1])
@@ -212,16 +137,6 @@ def add(place: Position, shift: Position) -> Position:
 
 
 def _crossing(line: int, across: float, axis: int, onward: float) -> Crossing:
-    """Return the crossing of a grid line by a motion, map frame: the places right before and after it.
-
-    They are (x, y) in squares, 1e-6 squares from the line; with them the square (column, row) entered.
-
-    Parameters
-    ----------
-    line : its whole-numbered coordinate.
-    across : where the motion crosses it, by the other coordinate, in squares.
-    axis : 0 for a line x = `line`, 1 for a line y = `line`.
-    onward : LINE_DISTANCE with the sign of the motion along that axis.
-    """
+    """Return the crossing of a grid line by a motion, map frame: the places right before and after it."""
     before, after = ((at, across) if axis == 0 else (across, at) for at in (line - onward, line + onward))
     return Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))

@@ -44,63 +44,38 @@ UNSETTLED_MARGIN = 1.5  # squares around a moved object within which observation
 
 
 class WhatIf(NamedTuple):
-    """The evaluation of a frame that may be the true one.
+    """The evaluation of a frame that may be the true one."""
 
-    Attributes
-    ----------
-    frame : the frame.
-    hypotheses : all frame hypotheses that are left then.
-    place : of Utak now, (x, y) in squares, map frame of `frame`.
-    outcome : of the motion of the object in hand, map frame of `frame`; None when none was moved, or not asked.
-    residual : number of fields that contradict it, over all observations; 0 is best.
-    searched : whether hypotheses were taken up again that had been given up.
-    """
-
-    frame: Frame
-    hypotheses: tuple[FrameHypothesis, ...]
-    place: Position
+    frame: Frame  # the frame
+    hypotheses: tuple[FrameHypothesis, ...]  # all frame hypotheses that are left then
+    place: Position  # of Utak now, (x, y) in squares, map frame of `frame`
+    # Of the motion of the object in hand, map frame of `frame`; None when none was moved, or not asked
     outcome: CarryOutcome | None
-    residual: int
-    searched: bool
+    residual: int  # number of fields that contradict it, over all observations; 0 is best
+    searched: bool  # whether hypotheses were taken up again that had been given up
 
 
 @dataclass(frozen=True)
 class Surprise:
-    """An observation that contradicts what is believed, with what was believed before it.
+    """An observation that contradicts what is believed, with what was believed before it."""
 
-    Attributes
-    ----------
-    command : the command before the observation, Utak's own frame.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each of its fields.
-    frame : the believed frame.
-    place : of Utak before the command, (x, y) in squares, map frame.
-    occupancy : the believed map.
-    observations : all earlier ones, oldest first.
-    held_objects : all objects that were ever held, before the command, by name, map frame.
-    in_hand : the name of the object in hand; None when there is none.
-    hypotheses : the frame hypotheses that are left.
-    pictures : completions of the believed map (sampled maps that agree with all counts); None when none were drawn.
-    """
-
-    command: Command
-    ranges: FieldRanges
-    frame: Frame
-    place: Position
-    occupancy: OccupancyMap
-    observations: Sequence[Observation]
-    held_objects: Mapping[str, HeldObject]
-    in_hand: str | None
-    hypotheses: tuple[FrameHypothesis, ...]
+    command: Command  # the command before the observation, Utak's own frame
+    ranges: FieldRanges  # (160, 2) int16, least and greatest count of occupied squares under each of its fields
+    frame: Frame  # the believed frame
+    place: Position  # of Utak before the command, (x, y) in squares, map frame
+    occupancy: OccupancyMap  # the believed map
+    observations: Sequence[Observation]  # all earlier ones, oldest first
+    held_objects: Mapping[str, HeldObject]  # all objects that were ever held, before the command, by name, map frame
+    in_hand: str | None  # the name of the object in hand; None when there is none
+    hypotheses: tuple[FrameHypothesis, ...]  # the frame hypotheses that are left
+    # Completions of the believed map (sampled maps that agree with all counts); None when none were drawn
     pictures: Completions | None = None
 
     # -- what is known of it ---------------------------------------------------------------------
 
     @property
     def carried(self) -> tuple[str, Push | Turn] | None:
-        """Return the name of the object that was to be moved, and the command (push or turn); None when none was.
-
-        The command is in Utak's own frame, in squares or degrees. None as well for a walk with an object in hand.
-        """
+        """Return the name of the object that was to be moved, and the command (push or turn); None when none was."""
         if self.in_hand is not None and isinstance(self.command, Push | Turn):
             return self.in_hand, self.command
         return None
@@ -112,18 +87,12 @@ class Surprise:
 
     @property
     def any_turned(self) -> bool:
-        """Return whether any object was ever turned, or is to be turned now: then it tells where the origin lies.
-
-        An object that was turned by whole rounds in all does not count.
-        """
+        """Return whether any object was ever turned, or is to be turned now: then it tells where the origin lies."""
         return self.degrees != 0.0 or any(held.turned % 360 for held in self.held_objects.values())
 
     @property
     def commanded_place(self) -> Position:
-        """Return where the command leads: (east, north) in squares, Utak's own frame.
-
-        That is where Utak is already unless it walks with an empty hand or pushes an object.
-        """
+        """Return where the command leads: (east, north) in squares, Utak's own frame."""
         east, north = self.frame.place_to_utak(*self.place)
         if isinstance(self.command, Move if self.in_hand is None else Push):
             return east + self.command.east, north + self.command.north
@@ -131,32 +100,21 @@ class Surprise:
 
     @cached_property
     def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
-        """Return what all observations before the command leave of the frame hypotheses, in their order; cached.
-
-        Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame. Only the
-        last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute all.
-        """
+        """Return what all observations before the command leave of the frame hypotheses, in their order; cached."""
+        # Empty when they refute all.
         return consistent_hypotheses(
             self.observations[-MAX_JUDGING_OBSERVATIONS:], self.hypotheses, self.unsettled_discs
         )
 
     @cached_property
     def judging_observations(self) -> list[Observation]:
-        """Return the observations by which frames are judged, oldest first: the last earlier ones and the new one.
-
-        Each holds its counts, (160, 2), and its place, (east, north) in squares, Utak's own frame. The new one has its
-        place where it was commanded. Earlier ones are MAX_JUDGING_OBSERVATIONS (24) at most.
-        """
+        """Return the observations by which frames are judged, oldest first: the last earlier ones and the new one."""
         newest = Observation(self.ranges, self.commanded_place)
         return [*self.observations[-MAX_JUDGING_OBSERVATIONS:], newest]
 
     @cached_property
     def unsettled_discs(self) -> list[UnsettledDisc]:
-        """Return the parts of the table where any object lay at any time, or is to lie now, sorted.
-
-        They are discs of Utak's own frame: a middle (east, north) and a radius `reach`, in squares, that of the object
-        plus UNSETTLED_MARGIN (1.5). Without repetitions, sorted by middle; [] when no object was ever held.
-        """
+        """Return the parts of the table where any object lay at any time, or is to lie now, sorted."""
         discs = set()
         for held in self.held_objects.values():
             lying = [held.polygon, held.first]
@@ -173,11 +131,7 @@ class Surprise:
 
     @cached_property
     def prefixes(self) -> ReplayPrefixes:
-        """Return the replays of the first observations (mapped one after the other) in the believed frame; cached.
-
-        Its method `first(n)` returns the map of the first n observations alone (map frame of the believed frame), to be
-        copied and gone on with, and whether any of them contradicts it.
-        """
+        """Return the replays of the first observations (mapped one after the other) in the believed frame; cached."""
         return ReplayPrefixes(self.frame, self.observations, self.held_objects)
 
     # -- evaluation of a frame -------------------------------------------------------------------
@@ -191,23 +145,10 @@ class Surprise:
         origin_error: float = 0.0,
         only_whether: bool = False,
     ) -> WhatIf:
-        """Return what contradicts a frame, with the outcome of the motion that fits it best.
-
-        The result holds `frame`, the hypotheses given, Utak's place after the command, (x, y) in squares, map frame of
-        `frame`, the outcome for the object in hand (None when none was to be moved, or when `only_whether` found a
-        contradiction before), and `residual`: how many fields contradict, over all observations. Of equal outcomes the
-        first that is tried counts: stopped by known obstacles, then as commanded.
-
-        Parameters
-        ----------
-        frame : the frame in question.
-        hypotheses : the frame hypotheses that are left if it is true; taken over into the result.
-        searched : whether they had been given up before; taken over into the result.
-        cut_short : whether the motion may have ended early without a known reason; then only such ends are tried.
-        origin_error : squares by which the origin of the frame may be wrong.
-        only_whether : ask only whether anything contradicts it; then the residual may be too small, though not 0.
-            False: the whole number.
-        """
+        """Return what contradicts a frame, with the outcome of the motion that fits it best."""
+        # The result holds `frame`, the hypotheses given, Utak's place after the command, (x, y) in squares, map frame
+        # of `frame`, the outcome for the object in hand (None when none was to be moved, or when `only_whether` found a
+        # contradiction before), and `residual`: how many fields contradict, over all observations.
         if only_whether and (refuted := self.refuted(frame, hypotheses)) is not None:
             return refuted._replace(searched=searched)
         if self.carried is None:  # it went as commanded
@@ -225,14 +166,7 @@ class Surprise:
         return min(tried, key=lambda one: one.residual)
 
     def refuted(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
-        """Return the evaluation of a frame that earlier observations contradict; None when none does.
-
-        The new observation is not asked. The result holds `frame`, the hypotheses given, the place to which the command
-        leads, (x, y) in squares, map frame of `frame`, no outcome, and `residual`: a number of fields above 0 that
-        contradict it, which may be too small; `searched` is False.
-
-        frame : the frame in question. hypotheses : the frame hypotheses that are left then; taken over.
-        """
+        """Return the evaluation of a frame that earlier observations contradict; None when none does."""
         residual = self.remapped(frame, only_whether=True).residual
         place = frame.place_from_utak(*self.commanded_place)
         return WhatIf(frame, hypotheses, place, None, residual, False) if residual else None
@@ -247,22 +181,7 @@ class Surprise:
         searched: bool = False,
         only_whether: bool = False,
     ) -> WhatIf:
-        """Return what contradicts a frame together with an outcome of the motion of the object in hand.
-
-        The result holds what was given, Utak's place by that outcome, (x, y) in squares, map frame of `frame`, and
-        `residual`: how many fields contradict both, over all observations; 0 when none does. An object must be in hand.
-
-        Parameters
-        ----------
-        frame : the frame in question.
-        hypotheses : the frame hypotheses that are left if it is true; taken over into the result.
-        outcome : where Utak and the object ended, map frame of `frame`; taken over.
-        slack : squares by which the object may have ended elsewhere.
-        origin_error : squares by which the origin of the frame may be wrong.
-        searched : whether the hypotheses had been given up before; taken over into the result.
-        only_whether : ask only whether anything contradicts them; then a residual may be too small, though not 0.
-            False: the whole number.
-        """
+        """Return what contradicts a frame together with an outcome of the motion of the object in hand."""
         assert self.carried is not None
         name, held_objects = self.carried[0], self.remapped(frame).held_objects
         slack, commanded = max(held_objects[name].slack, slack), outcome.as_commanded
@@ -279,16 +198,7 @@ class Surprise:
         origin_error: float,
         only_whether: bool = False,
     ) -> int:
-        """Return how many fields contradict a frame, over all observations.
-
-        Parameters
-        ----------
-        frame : the frame in question.
-        held_objects : all objects that were ever held, after the newest motion, map frame of `frame`.
-        place : of Utak then, (x, y) in squares, map frame of `frame`.
-        origin_error : squares by which the origin of the frame may be wrong.
-        only_whether : ask only whether there are any; then the number may be too small, though not 0.
-        """
+        """Return how many fields contradict a frame, over all observations."""
         under = self.remapped(frame)
         if only_whether and under.residual:
             return under.residual
@@ -296,25 +206,14 @@ class Surprise:
         return under.residual + count_clashes(frame, under.occupancy, lying, place, self.ranges, only_whether)
 
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
-        """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame.
-
-        The motion is a shift in squares, or a turn in degrees about Utak's place, as commanded. The place is (x, y) in
-        squares, the outline a shapely Polygon; all in the map frame of `frame`. An object must be moved.
-        """
+        """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame."""
         assert self.carried is not None
         name, command = self.carried
         place = frame.place_from_utak(*self.frame.place_to_utak(*self.place))
         return place, self.remapped(frame).held_objects[name].polygon, command_motion(command, frame, place)
 
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
-        """Return the map of all earlier observations in a frame, with the held objects; kept for each frame.
-
-        The result holds the occupancy map, all held objects before the command (by name), both map frame of `frame`,
-        and `residual`, the number of fields of earlier observations that contradict that frame.
-
-        only_whether : ask only whether anything contradicts the frame; if something does, the result may have no held
-            objects and too small a residual, but not 0. False: always complete.
-        """
+        """Return the map of all earlier observations in a frame, with the held objects; kept for each frame."""
         return self._maps.remapped(frame, only_whether)
 
     @cached_property
@@ -323,13 +222,7 @@ class Surprise:
         return RemapCache(self.frame, self.occupancy, self.observations, self.held_objects)
 
     def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[CarryOutcome]:
-        """Yield the outcomes of the motion of the object in hand that are to be evaluated in a frame.
-
-        In the map frame of `frame`: the motion as far as known obstacles let it go, if there are any on the way, and
-        then as commanded. Each has Utak's place (x, y) and the object's outline after it, in squares.
-
-        cut_short : whether it ended early without a known reason; then it is yielded as stuck, and with all early ends.
-        """
+        """Yield the outcomes of the motion of the object in hand that are to be evaluated in a frame."""
         place, polygon, motion = self.motion_in(frame)
         if cut_short:
             yield from (outcome for outcome in other_outcomes(place, polygon, motion) if outcome.stopped)
@@ -344,11 +237,7 @@ class Surprise:
 
     @cached_property
     def obstructions(self) -> Obstructions:
-        """Return the obstacles, occupied squares and open ones, about the motion of the object in hand; cached.
-
-        In the map frame of the believed frame, the squares within 3 squares of the bounds of the motion; asked for its
-        contacts it returns fractions of the motion, each with its chance. An object must be in hand, and to be moved.
-        """
+        """Return the obstacles, occupied squares and open ones, about the motion of the object in hand; cached."""
         return Obstructions(self.occupancy, *self.motion_in(self.frame), self.pictures)
 
     # -- after it ---------------------------------------------------------------------------------
@@ -358,28 +247,14 @@ class Surprise:
         return [other for other in self.held_objects.values() if other.name != held.name]
 
     def objects_after(self, outcome: CarryOutcome) -> list[HeldObject]:
-        """Return all held objects after an outcome of the motion of the one in hand, believed frame.
-
-        One for each object, in the order of `held_objects`; the one in hand has the outline of the outcome (shapely
-        Polygon, map frame), the others lie as before. Its rotation is not counted in `turned`; outlines alone matter.
-        """
+        """Return all held objects after an outcome of the motion of the one in hand, believed frame."""
         return [
             held.moved(outcome.polygon, held.slack, commanded=outcome.as_commanded) if name == self.in_hand else held
             for name, held in self.held_objects.items()
         ]
 
     def map_after(self, held_objects: Sequence[HeldObject], place: Position) -> OccupancyMap:
-        """Return a copy of the believed map with the new observation integrated as if it was made at `place`.
-
-        It is an occupancy map of squares settled as free, occupied or open, map frame of the believed frame; squares
-        that the observation contradicts are settled anew by it.
-
-        Parameters
-        ----------
-        held_objects : all objects that were ever held, where they lie then, map frame; they are subtracted from the
-            counts.
-        place : of Utak then, (x, y) in squares, map frame.
-        """
+        """Return a copy of the believed map with the new observation integrated as if it was made at `place`."""
         x, y = (math.floor(v) for v in place)
         samples, counts = subtract_held_objects(self.frame.samples(), self.ranges, x, y, held_objects)
         occupancy = self.occupancy.copy()
@@ -396,21 +271,7 @@ def agreeing_hypotheses(
     held_objects: Mapping[str, HeldObject],
     ranges: FieldRanges,
 ) -> tuple[FrameHypothesis, ...]:
-    """Return those exact origins that agree with an observation of turned objects; all when none does.
-
-    In the order given, each an angle in degrees with a box that is one point, in squares, map frame. An origin agrees
-    when no field contradicts the map and the objects as they lie by it, give or take half a cell of the grid.
-
-    Parameters
-    ----------
-    hypotheses : points of one origin grid, all of one angle; at least one.
-    frame : the believed frame.
-    place : of Utak where the observation was made, (x, y) in squares, map frame.
-    occupancy : the believed map, without the observation.
-    observations : all earlier ones, oldest first, with their places in Utak's own frame.
-    held_objects : all objects that were ever held, by name, map frame, after the motion before the observation.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
-    """
+    """Return those exact origins that agree with an observation of turned objects; all when none does."""
     own, error = frame.place_to_utak(*place), math.hypot(*grid_cell_size(hypotheses)) / 2
     agree, maps = [], RemapCache(frame, occupancy, observations, held_objects)
     for hypothesis in hypotheses:
@@ -423,13 +284,7 @@ def agreeing_hypotheses(
 
 
 def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motion:
-    """Return a command as a motion of the map frame of `frame`, in squares or degrees.
-
-    A turn is a Rotate by degrees, counter-clockwise positive, about `place`; a push a Translate (dx east, dy north).
-
-    command : Utak's own frame. place : of Utak when the command is given, (x, y) in squares, map frame; a turn is about
-    it.
-    """
+    """Return a command as a motion of the map frame of `frame`, in squares or degrees."""
     if isinstance(command, Turn):
         return Rotate(command.degrees, place)
     return Translate(*frame.to_map(command.east, command.north))
@@ -443,19 +298,6 @@ def count_clashes(
     ranges: FieldRanges,
     only_whether: bool = False,
 ) -> int:
-    """Return how many fields of an observation contradict the map and the held objects; 0 when none does.
-
-    Fields of earlier observations that are no longer possible with it count as well.
-
-    Parameters
-    ----------
-    frame : of the map.
-    occupancy : the map.
-    held_objects : all held objects where they lie, map frame.
-    place : where the observation was made, (x, y) in squares, map frame.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
-    only_whether : ask only whether there are any; then the number may be too small, though not 0 where there are some:
-        fields of earlier observations are left out if one of this observation contradicts. False: all are counted.
-    """
+    """Return how many fields of an observation contradict the map and the held objects; 0 when none does."""
     x, y = math.floor(place[0]), math.floor(place[1])
     return occupancy.clashes(*subtract_held_objects(frame.samples(), ranges, x, y, held_objects), x, y, only_whether)

@@ -31,44 +31,20 @@ EndOrContact = TypeVar("EndOrContact", "BlockedMotion", ContactHypothesis)
 
 
 class BlockedMotion(NamedTuple):
-    """A possible end of a motion.
+    """A possible end of a motion."""
 
-    Attributes
-    ----------
-    how : predicted for the end of the whole motion, else blocked.
-    place : from which the observation is made then, (x, y) in squares, map frame.
-    chance : its probability before the observation, 0 to 1.
-    contact_squares : the open squares (settled neither as free nor as occupied) one of which blocked it, (column, row)
-        of the map frame; empty where something known did, or nothing.
-    outcome : of the motion of the object in hand; None when there is none.
-    """
-
-    how: str
-    place: Position
-    chance: float
+    how: str  # predicted for the end of the whole motion, else blocked
+    place: Position  # from which the observation is made then, (x, y) in squares, map frame
+    chance: float  # its probability before the observation, 0 to 1
+    # The open squares (settled neither as free nor as occupied) one of which blocked it, (column, row) of the map
+    # frame; empty where something known did, or nothing
     contact_squares: frozenset[Square] = NO_SQUARES
-    outcome: CarryOutcome | None = None
+    outcome: CarryOutcome | None = None  # of the motion of the object in hand; None when there is none
 
 
 def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
-    """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first.
-
-    [] is returned for a turn, or when the motion hardly met anything and ends inside a square. At a grid line each end
-    is returned once for each side, for the observation may be made from either.
-
-    Parameters
-    ----------
-    surprise : the observation after the motion.
-    held : the object in hand, before the motion; None for a walk.
-    motion : as commanded, map frame.
-
-    Returns
-    -------
-    list of BlockedMotion
-        Each holds its kind (predicted or blocked), the place from which the observation is made then, (x, y) in
-        squares, map frame, its chance (0 to 1) before the observation, the open squares one of which blocked it, and
-        the outcome for the object. Their chances sum to 1 at most; no more than MAX_ENDS contacts.
-    """
+    """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first."""
+    # At a grid line each end is returned once for each side, for the observation may be made from either.
     if not isinstance(motion, Translate):
         return []
     contacts = _walk_contacts(surprise, motion) if held is None else _push_contacts(surprise, held, motion)
@@ -82,22 +58,12 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
 
 
 def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
-    """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most.
-
-    They are returned as they were given. Those of a chance of MIN_END_CHANCE or less are left out; [] when none is
-    left; of equal chances the order given is kept.
-
-    ends : all of one kind, each with a probability `chance`, 0 to 1.
-    """
+    """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most."""
     return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
 
 
 def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
-    """Return an end once for each place from which the observation may be made there, its chance divided evenly.
-
-    On a grid line those are both sides of it, at a grid corner all four squares, 1e-6 squares from the line, the
-    south-west one first; else the end alone. Each has that place, (x, y) in squares, map frame, its outcome likewise.
-    """
+    """Return an end once for each place from which the observation may be made there, its chance divided evenly."""
     found = observation_places(end.place)
     outcomes = (end.outcome and end.outcome._replace(place=view) for view in found)
     return [
@@ -107,14 +73,7 @@ def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
 
 
 def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
-    """Return the ends of a walk at each grid line that it crosses, in order, once for each side of the line.
-
-    They are of kind blocked; the chance of a contact is divided evenly between both sides, the far side first. Each has
-    its place, (x, y) in squares, map frame, 1e-6 squares from the line, and the square (column, row) behind the line if
-    that is open. [] when no line is crossed.
-
-    surprise : the observation after the walk. motion : map frame.
-    """
+    """Return the ends of a walk at each grid line that it crosses, in order, once for each side of the line."""
     way, occupancy = line_crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
     chances = ObstacleChance(occupancy, surprise.pictures).met([[crossing.entered] for crossing in way])
     found = []
@@ -126,14 +85,7 @@ def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]
 
 
 def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> list[BlockedMotion]:
-    """Return the ends of a push at each contact of Utak or of the object, in the order of the way.
-
-    They are of kind blocked: Utak's place (x, y) and the object's outline there, in squares, map frame, the chance of
-    the contact, and the open squares one of which it was with. On a grid line an end comes once for each side. [] when
-    nothing can be met.
-
-    surprise : the observation after the push. held : the object before the push. motion : as commanded, map frame.
-    """
+    """Return the ends of a push at each contact of Utak or of the object, in the order of the way."""
     place, polygon = surprise.place, held.polygon
     found = []
     for contact in surprise.obstructions.contacts(place, polygon, motion):
@@ -143,19 +95,7 @@ def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> l
 
 
 def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanation]) -> list[Explanation]:
-    """Return those explanations with which the observation agrees, each with its cost by the map prior.
-
-    Parameters
-    ----------
-    surprise : the observation.
-    explanations : possible ends of the motion; none of them contradicts what was settled before.
-
-    Returns
-    -------
-    list of Explanation
-        In the same order, their places (x, y) in squares, map frame, and all else unchanged but for `prior_cost`: log
-        odds (natural logarithm), relative to the best one, which has 0. [] when it agrees with none.
-    """
+    """Return those explanations with which the observation agrees, each with its cost by the map prior."""
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}
     for one in explanations:
@@ -173,12 +113,10 @@ def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanati
 
 
 def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
-    """Settle the square of Utak in `occupancy` after an explanation, and return whether the contact is possible there.
-
-    A contact is impossible where all its squares are free, or where Utak would be in an occupied square. An observation
-    from beyond the line of contact is made from the obstacle's square. At the commanded end on a line, or at a known
-    obstacle, the observation may be made from any square beside it, so nothing is settled and True is returned.
-    """
+    """Settle the square of Utak in `occupancy` after an explanation, and return whether a contact is possible."""
+    # A contact is impossible where all its squares are free, or where Utak would be in an occupied square. At the
+    # commanded end on a line, or at a known obstacle, the observation may be made from any square beside it, so nothing
+    # is settled and True is returned.
     against, (x, y) = explanation.contact_squares, explanation.place
     own = (math.floor(x), math.floor(y))
     if against and all(occupancy.state[occupancy.index(*square)] == FREE for square in against):

@@ -22,46 +22,21 @@ CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: i
 
 
 def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
-    """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None.
-
-    Parameters
-    ----------
-    surprise : the observation after the motion.
-    held : the object in hand, before the motion.
-    motion : as commanded, map frame. Nothing settled before contradicts the whole of it.
-
-    Returns
-    -------
-    CarryOutcome or None
-        The likeliest contact that nothing contradicts, or a shortened turn: Utak's place (x, y) and the object's
-        outline there, in squares, map frame, and the degrees by which the object was turned. None as well when the
-        whole motion is contradicted and no contact explains it.
-    """
+    """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None."""
     if is_contradicted(surprise, predicted_outcome(surprise.place, held.polygon, motion)):
         return likeliest_contact(surprise, held, motion)
     return shortened_turn(surprise, held, motion) if isinstance(motion, Rotate) else None
 
 
 def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
-    """Return whether what the observation settles, together with all earlier ones, contradicts the observation itself.
-
-    surprise : the newest observation, with the frame, map and objects believed before it. outcome : the supposed
-    outcome of the motion of the object in hand, believed frame; nothing settled before contradicts it.
-    """
+    """Return whether what the observation settles, with all earlier ones, contradicts the observation itself."""
     held_objects = surprise.objects_after(outcome)
     occupancy = surprise.map_after(held_objects, outcome.place)
     return count_clashes(surprise.frame, occupancy, held_objects, outcome.place, surprise.ranges) > 0
 
 
 def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
-    """Return the outcome of the likeliest contact that nothing contradicts; None when there is none.
-
-    It is of kind blocked: Utak's place (x, y) and the object's outline at the contact, in squares, map frame, the
-    rotation so far in degrees, and the open squares one of which blocked it. Neither the map before nor what the new
-    observation itself settles contradicts it.
-
-    surprise : the observation after the motion. held : the object before the motion. motion : as commanded, map frame.
-    """
+    """Return the outcome of the likeliest contact that nothing contradicts; None when there is none."""
     for end in surprise.obstructions.outcomes(surprise.place, held.polygon, motion):
         there = surprise.objects_after(end)
         fits = not count_clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
@@ -71,16 +46,7 @@ def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> C
 
 
 def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> CarryOutcome | None:
-    """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None.
-
-    It is an outcome of kind blocked: Utak's place (x, y), which a turn does not change, the outline of the object there
-    (shapely Polygon, in squares, map frame), and by how many degrees it was turned, counter-clockwise positive; contact
-    squares are named where a contact is supposed there. No observation contradicts the whole turn. But nothing can have
-    come to stand where the object lay before. Of ends that explain as much the one of the middle rotation is returned,
-    and only where it leaves fewer than half of the newly occupied squares beside the object.
-
-    surprise : the observation after the turn. held : the object before the turn. motion : as commanded, map frame.
-    """
+    """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None."""
     place, polygon = surprise.place, held.polygon
     others = surprise.others(held)
     whole = _turned(held, motion.carry(polygon), held.slack, motion.degrees)
@@ -100,18 +66,7 @@ def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> Carr
 
 
 def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
-    """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin.
-
-    It has the outline given, `turned` is greater by `degrees`, and `astray` (how far the open origin may put it
-    elsewhere, in squares) is scaled to the new rotation.
-
-    Parameters
-    ----------
-    held : the object before the turn.
-    polygon : its outline after it, shapely Polygon, map frame.
-    slack : how far the true outline may lie from that, in squares.
-    degrees : of the turn, counter-clockwise positive.
-    """
+    """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin."""
     moved = held.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (held, moved))
     whole = (
@@ -121,17 +76,7 @@ def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
 
 
 def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
-    """Return how many squares right beside an object are occupied by the newest observation alone.
-
-    That is a count of squares within 1 square of its outline that were not settled as occupied before, and are then.
-
-    Parameters
-    ----------
-    surprise : the newest observation, with the map before it.
-    held : the object where it lies now, map frame.
-    others : all other held objects.
-    place : of Utak now, (x, y) in squares, map frame.
-    """
+    """Return how many squares right beside an object are occupied by the newest observation alone."""
     before, after = surprise.occupancy, surprise.map_after([*others, held], place)
     about = patch_of_polygon(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != OCCUPIED]

@@ -42,35 +42,17 @@ MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bound
 
 
 class ReestimatedMotion(NamedTuple):
-    """A re-estimated earlier motion, and the evaluation of everything else with it.
+    """A re-estimated earlier motion, and the evaluation of everything else with it."""
 
-    Attributes
-    ----------
-    walk : the correction of the earlier motion.
-    what_if : the evaluation of the newest observation with it.
-    """
-
-    walk: ReestimatedWalk
-    what_if: WhatIf
+    walk: ReestimatedWalk  # the correction of the earlier motion
+    what_if: WhatIf  # the evaluation of the newest observation with it
 
 
 class CarriedMotion:
-    """An earlier straight motion with an object in hand, in the believed frame.
-
-    Attributes
-    ----------
-    ends : where it may have been blocked, the likeliest first by what was known before it, and last its commanded end.
-        An end on a grid line comes once for each square from which the observation may be made.
-    """
+    """An earlier straight motion with an object in hand, in the believed frame."""
 
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
-        """Find the ends of a motion with an object in hand.
-
-        Parameters
-        ----------
-        motion : its object has a known pose at the observation before it.
-        surprise : the believed frame, observations and objects; its newest observation is not asked.
-        """
+        """Find the ends of a motion with an object in hand."""
         assert motion.in_hand is not None
         frame, observations, held_objects = (
             surprise.frame,
@@ -95,17 +77,9 @@ class CarriedMotion:
         return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
-        """Return the state of what blocked the motion at `end`: OCCUPIED for something known, OPEN or FREE (1, -1, 0).
-
-        OPEN: open squares, of which one may have blocked it. FREE if something known would have blocked it before, or
-        if nothing can be met there; OPEN at the commanded end.
-
-        Parameters
-        ----------
-        end : one of `ends`.
-        occupancy : the map in the believed frame.
-        things : squares (column, row) that were occupied then by objects moved since, map frame.
-        """
+        """Return the state of what blocked the motion at `end`."""
+        # OCCUPIED for something known, OPEN or FREE (1, -1, 0).
+        # FREE if something known would have blocked it before, or if nothing can be met there;
         body, obstructions = ContactBody(self._polygon, [self._place]), self._obstructions(occupancy)
         known = obstructions.known.first_contact(body, self._motion).fraction
         if things:
@@ -120,79 +94,36 @@ class CarriedMotion:
         return OPEN if end.progress == 1.0 or any(met) else FREE
 
     def _obstructions(self, occupancy: OccupancyMap) -> Obstructions:
-        """Return the obstacles about the motion in a map: occupied squares (`known`) and open ones, map frame.
-
-        Asked for its contacts it returns fractions (0 to 1) of the motion, each with its chance by counts alone.
-
-        occupancy : the map in the believed frame.
-        """
+        """Return the obstacles about the motion in a map: occupied squares (`known`) and open ones, map frame."""
         return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
 
 def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame.
-
-    Parameters
-    ----------
-    surprise : the newest observation, which the believed ends contradict.
-    motions : earlier straight motions, oldest first.
-
-    Returns
-    -------
-    list of ReestimatedMotion
-        One for each end that fits: the shift of everything since that motion, (east, north) in squares, Utak's own
-        frame, with the evaluation of the newest observation by it (Utak's place (x, y) in squares, map frame; residual
-        0). Contacts with something known first, then by motion, the newest first; [] when there is none.
-    """
+    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame."""
     tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
     found = [one for motion in tried for one in _other_ends(surprise, motion)]
     return sorted(found, key=lambda one: not one.walk.contact_known)
 
 
 def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return other ends, with another origin of the frame, of the newest carrying motion that explains everything so.
-
-    Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
-    squares; where the observations since were made depends on the origin. MAX_MOTIONS_WITH_ORIGIN motions are tried.
-
-    Parameters
-    ----------
-    surprise : the newest observation, which the believed ends contradict.
-    motions : earlier straight motions, oldest first; those with an empty hand are skipped.
-
-    Returns
-    -------
-    list of ReestimatedMotion
-        Of one motion only, one for each end and frame that fits: the shift of everything since, (east, north) in
-        squares, Utak's own frame, and the evaluation by it: the frame with its origin, the hypotheses left, Utak's
-        place (x, y) in squares, map frame of that frame, and a residual of 0. Contacts with something known first; []
-        when there is none.
-    """
+    """Return other ends, with another frame origin, of the newest carrying motion that explains everything so."""
+    # Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
+    # squares; where the observations since were made depends on the origin.
     tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
     found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
     return sorted(next(filter(None, found), []), key=lambda one: not one.walk.contact_known)
 
 
 def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
-    """Return whether the pose of the object in hand before a motion is known; True for an empty hand.
-
-    It is known when the observation before the motion was made after the object was first held.
-
-    surprise : the earlier observations are asked for the pose.
-    """
+    """Return whether the pose of the object in hand before a motion is known; True for an empty hand."""
     before = surprise.observations[motion.number - 1].moved
     return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
 
 
 def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation.
-
-    Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation of
-    the newest observation. In the order of the way for an empty hand, else the likeliest contact first; nothing when
-    the observations before the motion contradict each other.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
+    # Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation
+    # of the newest observation.
     observations, frame = surprise.observations, surprise.frame
     believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
@@ -222,14 +153,9 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
 
 
 def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them.
-
-    Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation of
-    the newest observation in that frame. The likeliest contact first, and for each end the likeliest frame first, of
-    which 3 are tried at most.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
+    # Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation
+    # of the newest observation in that frame.
     origins = any_origin((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:
         corrected, correction = _corrected(surprise, motion, end)
@@ -253,13 +179,8 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
 
 
 def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
-    """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since.
-
-    The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion. Places,
-    observations and objects are corrected; the map of the surprise is not, and must be made anew.
-
-    motion : earlier than the newest observation. end : Utak's own frame.
-    """
+    """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since."""
+    # The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion.
     frame, believed = surprise.frame, surprise.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
     since = [held for held in surprise.held_objects.values() if held.since > motion.number]
@@ -274,17 +195,9 @@ def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tu
 
 
 def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Position:
-    """Return the shift of an object when the observation that showed it was made `shift` away.
-
-    An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
-    the observation is made.
-
-    Parameters
-    ----------
-    held : the object, map frame; the observation before it was first held showed it.
-    shift : (east, north) in squares, Utak's own frame, as is the result.
-    surprise : the believed frame and all earlier observations, at their believed places.
-    """
+    """Return the shift of an object when the observation that showed it was made `shift` away."""
+    # An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
+    # the observation is made.
     if not is_grid_aligned(held.first):
         return shift
     frame, observation = surprise.frame, surprise.observations[held.since - 1]
@@ -296,20 +209,7 @@ def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Posi
 def _moved_since(
     under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
 ) -> frozenset[Square]:
-    """Return the squares that objects covered when a motion was made, without the object in hand.
-
-    Parameters
-    ----------
-    under : the map and all objects that were ever held, where they lie now, map frame of `frame`.
-    observations : all, oldest first.
-    motion : the motion in question.
-    frame : that of the map.
-
-    Returns
-    -------
-    frozenset of (column, row)
-        Map frame. An object that was first held later counts where it was first held.
-    """
+    """Return the squares that objects covered when a motion was made, without the object in hand."""
     before = {pose.name: pose for pose in observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
     for held in under.held_objects.values():

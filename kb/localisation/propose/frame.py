@@ -36,21 +36,7 @@ MIN_ORIGIN_AREA = 0.02  # squares^2 of origins left below which a blocked motion
 
 
 def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | None:
-    """Return the evaluation of the frame that explains an observation best; None when no frame is left.
-
-    Parameters
-    ----------
-    surprise : the observation, after objects were moved.
-    reconsider : whether hypotheses that were given up may be taken up again.
-    simple : whether a motion that ended early explains the observation in the believed frame.
-
-    Returns
-    -------
-    WhatIf or None
-        The frame (angle in degrees, origin), the hypotheses left then, Utak's place (x, y) in squares, map frame of
-        that frame, and the outcome for the object in hand. Its residual, the number of fields that contradict it, is 0
-        where a frame explains everything; else it is the least one.
-    """
+    """Return the evaluation of the frame that explains an observation best; None when no frame is left."""
     if surprise.any_turned:
         found = _other_orientation(surprise) or origin_from_turn(surprise, simple)
         if found is not None:
@@ -59,14 +45,7 @@ def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | N
 
 
 def _other_orientation(surprise: Surprise) -> WhatIf | None:
-    """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none.
-
-    The result is its evaluation: the frame, the hypotheses left (all of other orientations), Utak's place (x, y) in
-    squares, map frame of that frame, and a residual of 0. Of several the likeliest is returned. Its origin is taken to
-    be the middle of the square of waking.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none."""
     angle = surprise.frame.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
     left = consistent_hypotheses(surprise.judging_observations, others, surprise.unsettled_discs)
@@ -76,15 +55,7 @@ def _other_orientation(surprise: Surprise) -> WhatIf | None:
 
 
 def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
-    """Return the evaluation of the least residual; None when no frame is left.
-
-    The residual is the number of fields that contradict the frame; with it come Utak's place (x, y) in squares, map
-    frame of that frame, and the outcome for the object in hand. The first frame without residual is returned at once,
-    the likeliest tried first; of equal residuals the first tried. reconsider : whether frames that were given up may be
-    tried.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Return the evaluation of the least residual; None when no frame is left."""
     found: list[WhatIf] = []
     affordable = MAX_REMAPPED_OBSERVATIONS // (len(surprise.observations) + 1)
     few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
@@ -109,14 +80,7 @@ def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
 
 
 def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
-    """Yield sets of hypotheses to evaluate, the likeliest set first, each with whether they had been given up before.
-
-    A hypothesis is an angle in degrees and a box of origins in squares, map frame. Another origin is tried before
-    orientations of a worse map prior. A set may be empty.
-
-    surprise : the newest observation, with the frame, map and objects believed before it. reconsider : whether
-    hypotheses that were given up are yielded at all.
-    """
+    """Yield sets of hypotheses to evaluate, the likeliest set first, each with whether given up before."""
     recent, unsettled = surprise.judging_observations, surprise.unsettled_discs
     left = consistent_hypotheses(recent, surprise.hypotheses, unsettled)
     plainest = tuple(hypothesis for hypothesis in left if hypothesis.prior_cost <= OFF_CENTRE_COST)
@@ -130,13 +94,9 @@ def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[Frame
 
 
 def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
-    """Return all hypotheses that observations leave, of orientations near to those that are left.
-
-    Near is within SEARCHED_ANGLE_MARGIN (2) degrees; of the believed orientation alone when they differ widely. In the
-    order of their angles, each an angle in degrees and a box of origins in squares, map frame; empty when none is left.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Return all hypotheses that observations leave, of orientations near to those that are left."""
+    # In the order of their angles, each an angle in degrees and a box of origins in squares, map frame; empty when none
+    # is left.
     angles = [surprise.frame.angle, *(h.angle for h in surprise.hypotheses)]
     if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
         angles = [surprise.frame.angle]
@@ -145,15 +105,8 @@ def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
 
 
 def _blocked_motion(surprise: Surprise, few: int) -> WhatIf | None:
-    """Return a frame that was left before the motion, in which the motion was blocked and nothing contradicts.
-
-    The result is its evaluation: the frame, the hypotheses left, Utak's place (x, y) in squares, map frame of that
-    frame, the outcome for the object, and a residual of 0. A contact with something known is preferred; among
-    orientations that do as well, the middle one is returned. None when there is none, or when no object was to be
-    moved. few : frames to evaluate, at most.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Return a frame that was left before the motion, in which the motion was blocked and nothing contradicts."""
+    # None when there is none, or when no object was to be moved.
     if surprise.carried is None:
         return None
     before = surprise.hypotheses_before
@@ -167,37 +120,16 @@ def _blocked_motion(surprise: Surprise, few: int) -> WhatIf | None:
 
 
 class BlockedPushWithOrigin(NamedTuple):
-    """A blocked push together with another origin of the frame.
+    """A blocked push together with another origin of the frame."""
 
-    Attributes
-    ----------
-    what_if : its evaluation, without residual.
-    chance : the probability that the push was blocked so, 0 to 1.
-    against : log odds (natural logarithm) against the part of the square of waking in which the origin lies then.
-    """
-
-    what_if: WhatIf
-    chance: float
+    what_if: WhatIf  # its evaluation, without residual
+    chance: float  # the probability that the push was blocked so, 0 to 1
+    # Log odds (natural logarithm) against the part of the square of waking in which the origin lies then
     against: float
 
 
 def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin]:
-    """Return how a push may have been blocked, with another origin on a coarse grid, so that nothing contradicts it.
-
-    Where Utak itself meets something depends on the origin.
-
-    Parameters
-    ----------
-    surprise : the observation after the push.
-
-    Returns
-    -------
-    list of BlockedPushWithOrigin
-        Each an evaluation (the frame, Utak's place (x, y) in squares, map frame of that frame, the outcome, residual
-        0), the chance of the contact, and the log odds against that origin. One for each square of Utak and each
-        contact, with the most central origin of those that give it. [] without a push, and once an object was turned,
-        for turned objects tell the origin.
-    """
+    """Return how a push may have been blocked, with another origin on a coarse grid, so that nothing contradicts it."""
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
     asked = surprise.carried is not None and not surprise.any_turned
     for frame in frames_of_coarse_origins(surprise.frame) if asked else ():
@@ -216,14 +148,7 @@ def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin
 
 
 def _blocked_pushes(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, float]]:
-    """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability.
-
-    Each is an evaluation (Utak's place (x, y) in squares, map frame of `frame`, the outcome, residual 0) with the
-    chance of its contact, 0 to 1, the likeliest first. Nothing is yielded when earlier observations contradict the
-    frame. An end on a grid line comes once for each side, each time with the whole chance.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability."""
     under = surprise.remapped(frame, only_whether=True)
     if under.residual:
         return

@@ -22,20 +22,7 @@ TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touc
 
 
 def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
-    """Return an object in hand after a motion: with its new outline (shapely Polygon, in squares, map frame).
-
-    Its rotation `turned` (degrees), its tolerance `slack` (squares), the squares known to be empty of it, and the
-    greatest number of fields that a motion left unexplained are brought up to date as well, and whether it was seen to
-    move as one thing; `held` is not changed.
-    Where it did not move, only the counts `stuck` and `thwarted` go on, and its place may become inexact.
-
-    Parameters
-    ----------
-    held : the object before the motion, map frame.
-    outcome : the chosen outcome; None when nothing is known to have moved.
-    residual : number of fields that the outcome leaves unexplained.
-    suspected : whether an open square is suspected to have blocked the motion.
-    """
+    """Return an object in hand after a motion: with its new outline (shapely Polygon, in squares, map frame)."""
     held = replace(held, unexplained=max(held.unexplained, residual))
     if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(held.polygon):
         thwarted = held.thwarted + (held.proven and not suspected)
@@ -54,19 +41,7 @@ def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, 
 def lean_on_obstacle(
     held: HeldObject, motion: Motion, known: Obstacles, count_clashes: Callable[[HeldObject], int]
 ) -> HeldObject:
-    """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle.
-
-    Only its outline (shapely Polygon, in squares, map frame) and what depends on its place change. It stays where it is
-    after a turn, when it touches something there, when nothing is within MAX_LEANING_DISTANCE (0.8) squares, or when
-    every touching place contradicts more of what is seen.
-
-    Parameters
-    ----------
-    held : the object after the motion, map frame.
-    motion : as commanded, map frame.
-    known : the known obstacles, map frame.
-    count_clashes : returns how many fields contradict an object where it lies.
-    """
+    """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle."""
     if not isinstance(motion, Translate):
         return held
     most = count_clashes(held)
@@ -80,12 +55,7 @@ def lean_on_obstacle(
 
 
 def _touching_places(polygon: Any, motion: Translate, known: Obstacles) -> Iterator[tuple[float, Any]]:
-    """Yield outlines that touch an obstacle on the motion or beside it, each with its distance from the believed one.
-
-    Pairs of the distance in squares and a shapely Polygon, map frame; not in the order of distance.
-
-    polygon : the believed outline after the motion, shapely Polygon, map frame. known : obstacles, map frame.
-    """
+    """Yield outlines that touch an obstacle on or beside the motion, each with its distance from the believed one."""
     if not any(motion):
         return
     onward = motion.steered(2 * MAX_LEANING_DISTANCE, 0.0)

@@ -24,26 +24,7 @@ SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, 
 
 
 def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
-    """Yield explanations that a push went as commanded and the object is larger than it seemed.
-
-    At most one for each side. An object that fills a gap in a wall mostly goes on to the end of the wall: of the
-    lengths that the observation agrees with, the greatest one over squares that were settled as occupied counts, if
-    there is one; else the least; or a greater one where something stands now that only this accounts for.
-
-    Only for an object that never moved before, with its sides on grid lines; nothing for a turn.
-
-    Parameters
-    ----------
-    surprise : the observation after the push.
-    held : the object in hand, before the push, map frame.
-    motion : as commanded, map frame.
-
-    Yields
-    ------
-    Explanation
-        Of kind larger, at the commanded place (x, y) in squares, map frame. Without residual; `instead` is the object
-        before the push; `distance` is how far it goes on at least beyond what was seen, 1 to MAX_HIDDEN_DEPTH squares.
-    """
+    """Yield explanations that a push went as commanded and the object is larger than it seemed."""
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
     for side in SIDE_DIRECTIONS:
@@ -53,28 +34,18 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
 
 
 class _Length(NamedTuple):
-    """A length by which an object may go on to one side, with which the observation agrees.
+    """A length by which an object may go on to one side, with which the observation agrees."""
 
-    Attributes
-    ----------
-    explanation : that it does.
-    occupied : whether all that was hidden had been settled as occupied.
-    floor : the map with floor in place of what was hidden.
-    held_objects : all held objects after the motion, the larger one last.
-    """
-
-    explanation: Explanation
-    occupied: bool
-    floor: OccupancyMap
-    held_objects: list[HeldObject]
+    explanation: Explanation  # that it does
+    occupied: bool  # whether all that was hidden had been settled as occupied
+    floor: OccupancyMap  # the map with floor in place of what was hidden
+    held_objects: list[HeldObject]  # all held objects after the motion, the larger one last
 
 
 def _best_length(agreeing: list[_Length], surprise: Surprise) -> Explanation:
-    """Return the best of some lengths of an object to one side, given the least first.
-
-    It is the greatest over squares that had been settled as occupied, or else the least; but a greater one where
-    something stands at the end that only the greater one accounts for.
-    """
+    """Return the best of some lengths of an object to one side, given the least first."""
+    # It is the greatest over squares that had been settled as occupied, or else the least; but a greater one where
+    # something stands at the end that only the greater one accounts for.
     settled = [length for length in agreeing if length.occupied]
     best = settled[-1] if settled else agreeing[0]
     for length in agreeing[agreeing.index(best) + 1 :]:
@@ -100,11 +71,7 @@ def _clashes_beside(length: _Length, squares: set[Square], surprise: Surprise) -
 def _agreeing_lengths(
     surprise: Surprise, held: HeldObject, motion: Translate, side: tuple[int, int]
 ) -> Iterator[_Length]:
-    """Yield the lengths by which the object may go on to one side, if the observation agrees, the least first.
-
-    surprise : the observation after the push. held : the object before it, map frame. motion : as commanded, map frame.
-    side : one of SIDE_DIRECTIONS.
-    """
+    """Yield the lengths by which the object may go on to one side, if the observation agrees, the least first."""
     occupancy, seen = surprise.occupancy, patch_of_polygon(held.polygon).squares()
     others = surprise.others(held)
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
@@ -123,12 +90,7 @@ def _agreeing_lengths(
 
 
 def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
-    """Return an object that goes on to one side by `depth` squares; its shape class is unknown then.
-
-    Its outlines `polygon` and `first` are both the larger one, shapely Polygon, in squares, map frame.
-
-    held : the object as it seemed, map frame. side : one of SIDE_DIRECTIONS, a unit step (x, y) of the map frame.
-    """
+    """Return an object that goes on to one side by `depth` squares; its shape class is unknown then."""
     steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
     polygon = shapely.union_all([step.carry(held.polygon) for step in steps])
     return replace(held, polygon=polygon, first=polygon, shape={})

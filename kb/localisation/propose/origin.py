@@ -25,38 +25,21 @@ COARSE_ORIGINS = tuple(
 
 
 def frames_of_coarse_origins(believed: Frame) -> list[Frame]:
-    """Return the frames of the believed orientation with each of the COARSE_ORIGINS: 7 x 7 points of a square.
-
-    The points are origins (x, y) in squares, map frame, within the square of waking, at the middles of 7 x 7 equal
-    parts of it. They come column by column from the west, each from south to north.
-    """
+    """Return the frames of the believed orientation with each of the COARSE_ORIGINS: 7 x 7 points of a square."""
     return [replace(believed, origin=place) for place in COARSE_ORIGINS]
 
 
 def origin_cost(believed: Frame, number: int) -> float:
-    """Return the log odds against an origin at one of `number` of the COARSE_ORIGINS, rather than the believed one.
-
-    Natural logarithm. number : of the 49 coarse origins, at least 1; the more they are the less the cost.
-    """
+    """Return the log odds against an origin at one of `number` of the COARSE_ORIGINS, rather than the believed one."""
     return OFF_CENTRE_COST * (believed.origin == CENTRE) - math.log(number / len(COARSE_ORIGINS))
 
 
 def blocked_walks_with_origin(
     motions: Sequence[MotionHypothesis], believed: Frame, observations: Sequence[Observation]
 ) -> list[Explanation]:
-    """Return explanations that one of the last walks was blocked, with another origin, without any contradiction.
-
-    Each has the frame, the place of the newest observation (x, y) in squares, map frame of it, the shift of all since
-    that walk, and a residual of 0; those of the oldest walk come first. Those by which all observations are made on the
-    same squares are one explanation. Its prior cost (log odds) is the map prior plus the log odds against the part of
-    the square in which the origin lies then. All are of kind misled; [] when there is none.
-
-    Parameters
-    ----------
-    motions : the last walks, oldest first; no more than MAX_WALKS_WITH_ORIGIN (3) are tried.
-    believed : the believed frame.
-    observations : all, oldest first, at their believed places in Utak's own frame; the newest where it was commanded.
-    """
+    """Return explanations that one of the last walks was blocked, with another origin, without any contradiction."""
+    # Each has the frame, the place of the newest observation (x, y) in squares, map frame of it, the shift of all since
+    # that walk, and a residual of 0; those of the oldest walk come first.
     origins = tuple(exact_hypothesis(frame) for frame in frames_of_coarse_origins(believed))
     alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}
     prefixes = cache(lambda frame: ReplayPrefixes(frame, observations, {}))
@@ -76,35 +59,18 @@ def blocked_walks_with_origin(
 
 
 def _corrected(walk: ReestimatedWalk, observations: Sequence[Observation]) -> list[Observation]:
-    """Return all observations, oldest first, where they were made by a re-estimated walk, Utak's own frame.
-
-    Their places are (east, north) in squares; those before the walk are unchanged.
-
-    walk : the shift of all since it. observations : at least one, oldest first, at their believed places.
-    """
+    """Return all observations, oldest first, where they were made by a re-estimated walk, Utak's own frame."""
     *before, newest = walk.correction.observations(observations)
     return [*before, newest._replace(place=walk.newest)]
 
 
 def _description(walk: ReestimatedWalk, observations: Sequence[Observation], drawn: DrawnScenes) -> MapDescription:
-    """Return the map by a re-estimated walk, as one to be completed; nothing is drawn yet.
-
-    Asked to draw it gives the log odds (natural logarithm) against its simplest completion (a map that agrees with all
-    counts, with every square free or occupied).
-
-    observations : all, oldest first, at their believed places in Utak's own frame. drawn : completions of scenes drawn
-    so far; it is shared, and new ones are added later.
-    """
+    """Return the map by a re-estimated walk, as one to be completed; nothing is drawn yet."""
     frame = walk.hypothesis.frame
     return MapDescription(remap(frame, frame, _corrected(walk, observations), ()).occupancy, drawn)
 
 
 def _explanation(alike: Sequence[ReestimatedWalk]) -> Explanation:
-    """Return walks of the same squares as one explanation: that of a known contact, then of the most central origin.
-
-    It is of kind misled: the frame, and where the newest observation was made then, (x, y) in squares, map frame of it.
-
-    alike : at least one; the hypotheses of all of them are left.
-    """
+    """Return walks of the same squares as one explanation: that of a known contact, then of the most central origin."""
     walk = min(alike, key=lambda one: (not one.contact_known, math.dist(one.hypothesis.frame.origin, CENTRE)))
     return reestimated_explanation(walk, tuple(one.hypothesis for one in alike))

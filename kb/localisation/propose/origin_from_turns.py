@@ -40,18 +40,11 @@ Interval = tuple[float, float]
 
 
 class TurnOriginCell(NamedTuple):
-    """A cell of a grid over the ends of a turn and the origins of a frame.
+    """A cell of a grid over the ends of a turn and the origins of a frame."""
 
-    Attributes
-    ----------
-    turn : from and to which fraction of the turn, 0 to 1.
-    columns : west and east bound of the origin in the square of waking, in squares, map frame, 0 to 1.
-    rows : its south and north bound, likewise.
-    """
-
-    turn: Interval
-    columns: Interval
-    rows: Interval
+    turn: Interval  # from and to which fraction of the turn, 0 to 1
+    columns: Interval  # west and east bound of the origin in the square of waking, in squares, map frame, 0 to 1
+    rows: Interval  # its south and north bound, likewise
 
     @property
     def origin(self) -> Position:
@@ -65,29 +58,15 @@ class TurnOriginCell(NamedTuple):
         return math.hypot(east - west, north - south) / 2
 
     def cut(self, *times: int) -> "list[TurnOriginCell]":
-        """Return the parts of the cell, its sides cut into so many equal parts: the product of `times` cells.
-
-        By the turn first, then from west to east, then from south to north, which changes fastest.
-
-        times : three numbers of parts: of the turn, west to east, south to north.
-        """
+        """Return the parts of the cell, its sides cut into so many equal parts: the product of `times` cells."""
         sides = [np.linspace(*side, n + 1).tolist() for side, n in zip(self, times, strict=True)]
         return [TurnOriginCell(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
 
 
 def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
-    """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none.
-
-    The result holds the frame (believed angle, that origin), the hypotheses left, Utak's place (x, y) in squares, map
-    frame of that frame, the outcome for the object (None without a turn), and a residual of 0. The orientation is the
-    believed one. The turn went to its end, or as far as known obstacles let it go; else it may have ended anywhere. Of
-    all origins that do, the middle one is returned; the hypotheses left are all of them.
-
-    Parameters
-    ----------
-    surprise : the observation, after any object was turned.
-    simple : whether a motion that ended early explains the observation in the believed frame.
-    """
+    """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none."""
+    # The result holds the frame (believed angle, that origin), the hypotheses left, Utak's place (x, y) in squares, map
+    # frame of that frame, the outcome for the object (None without a turn), and a residual of 0.
     points = _origins_left(surprise)
     error = math.hypot(*grid_cell_size(points)) / 2
     tried = (surprise.evaluate_frame(point.frame, (point,), origin_error=error, only_whether=True) for point in points)
@@ -98,28 +77,13 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
 
 
 def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
-    """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave.
-
-    An exact origin is a hypothesis of the believed angle (degrees) whose box is one point, in squares, map frame. In
-    their order; a grid has 11 x 11 of them, column by column from the west, each from south to north.
-
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    """
+    """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave."""
     given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
     return given if len(given) > 1 else origin_grid(surprise.frame, surprise.observations)
 
 
 def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
-    """Return what fits if a turn of the held object ended early; [] if there was no turn, or if nothing fits.
-
-    One evaluation for each cell (an interval of the turn and a box of origins) that fits: the frame with the origin in
-    its middle, Utak's place (x, y) in squares, map frame of that frame, the outcome of the turn, and a residual of 0.
-    Cells are cut as long as nothing contradicts them and they are not too many. Larger cells leave more room for where
-    the object lies.
-
-    surprise : the newest observation, with the frame, map and objects believed before it. bounds : of the origins,
-    (west, south, east, north) in squares, map frame.
-    """
+    """Return what fits if a turn of the held object ended early; [] if there was no turn, or if nothing fits."""
     if surprise.degrees == 0.0:
         return []
     place, polygon, motion = surprise.motion_in(surprise.frame)
@@ -138,16 +102,9 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
 
 
 def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> WhatIf:
-    """Return what contradicts an origin and an end of the turn in a cell.
-
-    The result holds the frame with that origin, Utak's place (x, y) in squares, map frame of it, the outcome of the
-    turn (None when earlier observations alone contradict the origin), and the residual, a number of fields. Both are
-    taken in its middle, with room for all others of the cell. The residual is 0 when nothing contradicts them; else it
-    may be too small.
-
-    surprise : the newest observation, with the frame, map and objects believed before it. length : of the turn, in
-    squares: the path of the outermost point of the object.
-    """
+    """Return what contradicts an origin and an end of the turn in a cell."""
+    # The result holds the frame with that origin, Utak's place (x, y) in squares, map frame of it, the outcome of the
+    # turn (None when earlier observations alone contradict the origin), and the residual, a number of fields.
     frame = Frame(surprise.frame.angle, cell.origin)
     left = (exact_hypothesis(frame),)
     refuted = surprise.refuted(frame, left)
@@ -159,17 +116,7 @@ def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> W
 
 
 def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, WhatIf]], length: float) -> list[WhatIf]:
-    """Return those turns that ended near a likely contact, ended at the contact; all as they are when none has one.
-
-    Contacts less likely than a tenth of the likeliest one are left out. Each result is an evaluation without residual:
-    the frame, Utak's place (x, y) in squares, map frame of it, and the outcome of the turn; in the order given.
-
-    Parameters
-    ----------
-    surprise : the newest observation, with the frame, map and objects believed before it.
-    fitting : the cells that nothing contradicts, with their evaluations.
-    length : of the turn, in squares: the path of the outermost point of the object.
-    """
+    """Return those turns that ended near a likely contact, ended at the contact; all as they are when none has one."""
     contacts = cache(lambda frame: surprise.obstructions.contacts(*surprise.motion_in(frame)))
     stopped = []
     for cell, one in fitting:
@@ -188,19 +135,13 @@ def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, Wha
 
 
 def _cell_slack(cell: TurnOriginCell, length: float) -> float:
-    """Return how far an object may lie from where the middle of a cell leaves it, in squares.
-
-    length : of the turn, in squares: the path of the outermost point of the object.
-    """
+    """Return how far an object may lie from where the middle of a cell leaves it, in squares."""
     begin, end = cell.turn
     return length * (end - begin) / 2
 
 
 def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
-    """Return the bounds of the cells for which some points of an origin grid stand: (west, south, east, north).
-
-    In squares, map frame, within the square of waking. points : exact origins, at least one.
-    """
+    """Return the bounds of the cells for which some points of an origin grid stand: (west, south, east, north)."""
     corners, half = np.array([point.box for point in points]), np.array(grid_cell_size(points)) / 2
     west, south = np.maximum(corners[:, :2].min(0) - half, 0.0).tolist()
     east, north = np.minimum(corners[:, 2:].max(0) + half, 1.0).tolist()
@@ -208,12 +149,7 @@ def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
 
 
 def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
-    """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left.
-
-    Nearest is the one whose furthest point (the origin, or a corner of the object) is least far from its mean.
-
-    fitting : at least one evaluation of an origin and an outcome, all without residual; map frame of each its own.
-    """
+    """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left."""
     fits = np.array([[one.frame.origin, *_object_corners(one)] for one in fitting])
     nearest = int(np.linalg.norm(fits - fits.mean(0), axis=2).max(1).argmin())
     left = dict.fromkeys(hypothesis for one in fitting for hypothesis in one.hypotheses)
@@ -221,12 +157,7 @@ def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
 
 
 def _object_corners(one: WhatIf) -> list[Position]:
-    """Return the corners of the object in hand, (x, y) in squares, map frame of its frame; [] when there is none.
-
-    They are those of its outline after the turn, the first repeated at the end.
-
-    one : the evaluation of a frame and an outcome.
-    """
+    """Return the corners of the object in hand, (x, y) in squares, map frame of its frame; [] when there is none."""
     if one.outcome is None:
         return []
     return [(float(x), float(y)) for x, y in shapely.get_coordinates(one.outcome.polygon)]

@@ -22,25 +22,7 @@ from kb.perception.seams import halves
 
 
 def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
-    """Yield the explanation that a push went as commanded and the object is only a part of what seemed one thing.
-
-    At most one: of the straight cuts with which the observation agrees the one that leaves the simplest outlines. What
-    is in hand touches the robot's square, and does not move over the rest.
-
-    Only for an object that never moved before; nothing for a turn.
-
-    Parameters
-    ----------
-    surprise : the observation after the push.
-    held : the object in hand as it seemed, before the push, map frame.
-    motion : as commanded, map frame.
-
-    Yields
-    ------
-    Explanation
-        Of kind parted, at the commanded place (x, y) in squares, map frame. Without residual; `instead` is the object
-        before the push, and `left` the squares of the rest.
-    """
+    """Yield the explanation that a push went as commanded and the object is only a part of what seemed one thing."""
     if held.proven or not isinstance(motion, Translate):
         return
     patch = held.seen_on or patch_of_polygon(held.polygon)
@@ -62,11 +44,8 @@ def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
 
 
 def _parted(held: HeldObject, patch: Patch, mask: Bools) -> HeldObject | None:
-    """Return the part of an object that lies on some of its squares; None where that is no single outline.
-
-    An outline askew was fitted to what is no one thing, so the part fills its squares then. Its shape class and
-    sub-cell extent are unknown. patch : the squares of the object. mask : those of the part, bool.
-    """
+    """Return the part of an object that lies on some of its squares; None where that is no single outline."""
+    # An outline askew was fitted to what is no one thing, so the part fills its squares then.
     squares = Patch(patch.west, patch.south, mask).squares()
     cells = shapely.union_all(list(map(square_polygon, squares)))
     polygon = held.polygon.intersection(cells) if is_grid_aligned(held.polygon) else cells

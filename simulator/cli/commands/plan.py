@@ -58,17 +58,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
-    """Return the plan at the current step of a story; None when there is none.
-
-    Parameters
-    ----------
-    story : a run or an episode.
-    name : its name in messages.
-
-    Raises
-    ------
-    BadInputError : the episode is damaged; the place is the line of the step.
-    """
+    """Return the plan at the current step of a story; None when there is none."""
     from kb.language.diagnostics import BadInputError, Problem, SourceSpan
     from kb.world.stated_plan import stated_plan
 
@@ -81,12 +71,7 @@ def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None
 
 
 def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
-    """Return a plan for all goals that has steps: the first one of a run, the last one of an episode.
-
-    The story is at its step then.
-
-    When no step has one, the story is at its end; what that says of unmet goals is returned, or None.
-    """
+    """Return a plan for all goals that has steps: the first one of a run, the last one of an episode."""
     from simulator.run.recorded_story import RecordedStory
 
     if isinstance(story, RecordedStory):
@@ -103,10 +88,7 @@ def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None"
 
 
 def _absence(story: "LiveStory | RecordedStory", asked: int | None, plan: "StatedPlan | None") -> str:
-    """Return in words that there is no plan, and why where that is known.
-
-    asked : the step that was asked for. plan : what is stated of a plan there.
-    """
+    """Return in words that there is no plan, and why where that is known."""
     what = "no step has a plan" if asked is None else f"step {story.at} has no plan"
     what += " that attains all goals" if plan is not None and plan.steps else ""
     if story.result is not None:

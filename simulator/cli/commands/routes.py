@@ -101,10 +101,8 @@ def _free_squares_of_scenario(name: str) -> "Bools":
 
 
 def _mirrored(point: tuple[float, float], top: int | None) -> tuple[float, float]:
-    """Return a point with y counted from the other end.
-
-    top : the number of rows; None to return the point as it is.
-    """
+    """Return a point with y counted from the other end."""
+    # None to return the point as it is.
     return point if top is None else (point[0], top - point[1])
 
 

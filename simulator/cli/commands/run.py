@@ -179,10 +179,7 @@ def _time_limit(options: argparse.Namespace) -> "TimeLimit | None":
 
 
 def _listener(options: argparse.Namespace, lines: "list[EpisodeLine]") -> "LineListener":
-    """Return the function that takes each line of the episode, for --dump-asp and --html.
-
-    lines : grows by each line when --html is given.
-    """
+    """Return the function that takes each line of the episode, for --dump-asp and --html."""
     listeners: list[LineListener] = []
     if options.dump_asp is not None:
         from simulator.episode.program_dump import ProgramDump

@@ -112,10 +112,7 @@ def _plan(options: argparse.Namespace) -> "tuple[SweepPlan, bool]":
 
 
 def _executor(options: argparse.Namespace, paths: str, carrying: bool) -> "Executor":
-    """Return what carries out the runs. Kernels are compiled here first, where worker processes run here.
-
-    paths : the path-finder. carrying : whether a task moves objects.
-    """
+    """Return what carries out the runs. Kernels are compiled here first, where worker processes run here."""
     from functools import partial
 
     from simulator.run.warming import warm
@@ -149,14 +146,7 @@ def usable_processors() -> int:
 
 
 class _Watch:
-    """Follows the runs: reports progress on a terminal, and writes their times.
-
-    Parameters
-    ----------
-    left : the runs to carry out.
-    known : how many are known from an earlier sweep.
-    times : where times are written.
-    """
+    """Follows the runs: reports progress on a terminal, and writes their times."""
 
     def __init__(self, left: "list[SweepRun]", known: int, times: "_Times") -> None:
         from collections import Counter
@@ -183,13 +173,7 @@ def is_times(head: bytes) -> bool:
 
 
 class _Times:
-    """The file of `--times`: the wall-clock seconds of each run that is carried out now, in the order of their ends.
-
-    Parameters
-    ----------
-    path : the file, which is overwritten; None for no file.
-    force : whether to overwrite a file that holds something else.
-    """
+    """The file of `--times`: the wall-clock seconds of each run that is carried out now, in the order of their ends."""
 
     def __init__(self, path: str | None, force: bool) -> None:
         from simulator.episode.output_files import GrowingFile

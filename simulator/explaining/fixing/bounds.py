@@ -26,10 +26,7 @@ MIN_SIDE_AREA = 1.0  # square squares; smaller parts of the floor are no side of
 
 
 def refutation(scenario: Scenario) -> str:
-    """Return the expectation `inside(T, Region)` of a thing that no motion fulfils, as text; "" when there is none.
-
-    That is a proof: no motion of the thing's outline among verge and fixed things leads into the region.
-    """
+    """Return the expectation `inside(T, Region)` of a thing that no motion fulfils, as text; "" when there is none."""
     things = {thing.name: thing for thing in scenario.world.movable}
     for fact in scenario.expectations or ():
         thing = things.get(str(fact.args[0])) if fact.name == "inside" else None
@@ -41,19 +38,7 @@ def refutation(scenario: Scenario) -> str:
 
 
 def cannot_pass(before: World, world: World, gap: Gap, thing: Thing) -> bool:
-    """Return whether a thing cannot be brought to the other side of a gap.
-
-    Parameters
-    ----------
-    before : the world without changes.
-    world : the world with the gap made wider.
-    gap : the gap as it was.
-    thing : the thing, where it lies in both.
-
-    Returns
-    -------
-    True when that is proved; False when it can, when it is not decided, and when another way leads round.
-    """
+    """Return whether a thing cannot be brought to the other side of a gap."""
     wall = shapely.from_wkt(gap.wall)
     closed = floor_of(before).difference(wall.buffer(GAP_MARGIN))
     parts = [part for part in shapely.get_parts(closed) if part.area >= MIN_SIDE_AREA]

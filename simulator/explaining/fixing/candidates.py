@@ -37,20 +37,13 @@ SIGHT_DISTANCE = 4.0  # squares; a place from which something is seen closely is
 
 @dataclass(frozen=True)
 class GapRange:
-    """The widths of a gap that are tried on one side.
+    """The widths of a gap that are tried on one side."""
 
-    Attributes
-    ----------
-    gap, side : the gap, and which of its walls gives way.
-    least : about the fewest steps with which what must be carried may pass, by geometry alone; at least 1.
-    most : the most steps that are tried.
-    alone : whether what must be carried may pass when nothing else is changed; else the gap is tried in pairs alone.
-    """
-
-    gap: Gap
+    gap: Gap  # the gap, and which of its walls gives way
     side: GapSide
-    least: int
-    most: int
+    least: int  # about the fewest steps with which what must be carried may pass, by geometry alone; at least 1
+    most: int  # the most steps that are tried
+    # Whether what must be carried may pass when nothing else is changed; else the gap is tried in pairs alone
     alone: bool = True
 
     def change(self, steps: int) -> Wider:
@@ -60,31 +53,17 @@ class GapRange:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The changes that are tried.
+    """The changes that are tried."""
 
-    Attributes
-    ----------
-    dropped : goals and constraints.
-    away : things.
-    ranges : by gap, the widths on each side where it can be made wider; a gap without any is left out.
-    led : places to be seen first.
-    """
-
-    dropped: tuple[Dropped, ...]
-    away: tuple[Away, ...]
+    dropped: tuple[Dropped, ...]  # goals and constraints
+    away: tuple[Away, ...]  # things
+    # By gap, the widths on each side where it can be made wider; a gap without any is left out
     ranges: tuple[tuple[GapRange, ...], ...]
-    led: tuple[Led, ...]
+    led: tuple[Led, ...]  # places to be seen first
 
 
 def candidates_of(scenario: Scenario, carried: tuple[Thing, ...], seen_from: list[XY]) -> Candidates:
-    """Return the changes that are tried.
-
-    Parameters
-    ----------
-    scenario : the scenario without changes.
-    carried : the things of which one must be carried; () when the robot only walks.
-    seen_from : where the robot was in the run, (x, y) in squares, table frame.
-    """
+    """Return the changes that are tried."""
     world = scenario.world
     away = tuple(Away(thing.name) for thing in (*world.movable, *world.fixed))
     size = max((2 * shapely.minimum_bounding_radius(thing.polygon) for thing in carried), default=0.0)
@@ -100,10 +79,7 @@ def candidates_of(scenario: Scenario, carried: tuple[Thing, ...], seen_from: lis
 
 
 def carried_things(scenario: Scenario, held: set[str]) -> tuple[Thing, ...]:
-    """Return the things of which one must be carried: those that were held, else all that can be moved.
-
-    () when no goal speaks of things that must be carried.
-    """
+    """Return the things of which one must be carried: those that were held, else all that can be moved."""
     if not any(stage.carried for stage in stages(scenario.task)):
         return ()
     movable = scenario.world.movable
@@ -116,11 +92,9 @@ def is_out_of_commands(result: Result, max_steps: int) -> bool:
 
 
 def _ranges_of(world: World, carried: tuple[Thing, ...], gap: Gap, widest: float) -> tuple[GapRange, ...]:
-    """Return the widths of a gap that are tried, by side; () when it cannot be made wider.
-
-    The upper end is the widest of those that can be made, found by bisection. So is the lower end, on the side where
-    the gap can be widest, because what cannot pass a gap cannot pass a narrower one; for other sides it is a guess.
-    """
+    """Return the widths of a gap that are tried, by side; () when it cannot be made wider."""
+    # So is the lower end, on the side where the gap can be widest, because what cannot pass a gap cannot pass a
+    # narrower one; for other sides it is a guess.
     limit = min(widest, max(gap.room, gap.width + 1.0))
     most_wanted = math.floor((limit - gap.width) / WIDTH_STEP + GAP_LENGTH_TOLERANCE)
     most_by_side = {}

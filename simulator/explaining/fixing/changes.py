@@ -23,30 +23,18 @@ PLACE_EXPECTATIONS = ("inside", "near", "visits", "circles")  # what a thing or 
 
 @dataclass(frozen=True)
 class Away:
-    """A thing is not there.
+    """A thing is not there."""
 
-    Attributes
-    ----------
-    name : its name in the world.
-    """
-
-    name: str
+    name: str  # its name in the world
 
 
 @dataclass(frozen=True)
 class Wider:
-    """A gap is wider, or a new door is made.
+    """A gap is wider, or a new door is made."""
 
-    Attributes
-    ----------
-    gap : the gap as it is.
-    side : which of its walls gives way.
-    steps : by how many steps of `WIDTH_STEP` it is wider; at least 1.
-    """
-
-    gap: Gap
-    side: GapSide
-    steps: int
+    gap: Gap  # the gap as it is
+    side: GapSide  # which of its walls gives way
+    steps: int  # by how many steps of `WIDTH_STEP` it is wider; at least 1
 
     @property
     def by(self) -> float:
@@ -61,44 +49,26 @@ class Wider:
 
 @dataclass(frozen=True)
 class Dropped:
-    """A goal or a constraint is not asked for.
+    """A goal or a constraint is not asked for."""
 
-    Attributes
-    ----------
-    index : its number in goal.lp, from 0.
-    goal : the fact as text.
-    is_constraint : whether it is a constraint (such as not_through) or a wish: nothing that must be attained.
-    """
-
-    index: int
-    goal: str
-    is_constraint: bool
+    index: int  # its number in goal.lp, from 0.
+    goal: str  # the fact as text
+    is_constraint: bool  # whether it is a constraint (such as not_through) or a wish: nothing that must be attained
 
 
 @dataclass(frozen=True)
 class Led:
-    """The robot is led to a place first, by commands that are given to it, and then acts by itself.
+    """The robot is led to a place first, by commands that are given to it, and then acts by itself."""
 
-    Attributes
-    ----------
-    place : the place, on free floor.
-    what : what is to be seen from there, in words.
-    """
-
-    place: XY
-    what: str
+    place: XY  # the place, on free floor
+    what: str  # what is to be seen from there, in words
 
 
 @dataclass(frozen=True)
 class MoreCommands:
-    """The robot may give more commands.
+    """The robot may give more commands."""
 
-    Attributes
-    ----------
-    max_steps : how many.
-    """
-
-    max_steps: int
+    max_steps: int  # how many
 
 
 WorldChange = Away | Wider | Dropped | Led | MoreCommands
@@ -106,25 +76,15 @@ WorldChange = Away | Wider | Dropped | Led | MoreCommands
 
 @dataclass(frozen=True)
 class Variant:
-    """A scenario with changes, ready to be run.
+    """A scenario with changes, ready to be run."""
 
-    Attributes
-    ----------
-    scenario, settings : what is run. Its expectations are those that can be asked of it; None when none can.
-    led : the places to which the robot is led first.
-    """
-
-    scenario: Scenario
+    scenario: Scenario  # what is run. Its expectations are those that can be asked of it; None when none can.
     settings: Settings
-    led: tuple[XY, ...] = ()
+    led: tuple[XY, ...] = ()  # the places to which the robot is led first
 
 
 def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[WorldChange]) -> Variant | None:
-    """Return a scenario with all of some changes; None when they cannot be made.
-
-    They cannot when a gap cannot be widened so, when no goal is left, or when expect.lp wants something of a thing that
-    is away.
-    """
+    """Return a scenario with all of some changes; None when they cannot be made."""
     made = tuple(changes)
     if not made:
         return Variant(scenario, settings)
@@ -154,10 +114,7 @@ def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[WorldCh
 
 
 def without_goals(task: Task, indices: set[int]) -> Task | None:
-    """Return a task without some of its goals (numbers from 0); None when nothing is left to attain.
-
-    The next step of a sequence becomes the first one when the first one is left out.
-    """
+    """Return a task without some of its goals (numbers from 0); None when nothing is left to attain."""
     left = [goal for index, goal in enumerate(task.goals) if index not in indices]
     texts = [str(goal) for goal in left]
     if texts and all(goal.name != "first" for goal in left):
@@ -196,12 +153,9 @@ def _is_wanted(expectations: tuple[Fact, ...] | None, away: set[str]) -> bool:
 
 
 def _conditions(scenario: Scenario, dropped: list[Dropped], away: set[str], slow: bool) -> tuple[Fact, ...] | None:
-    """Return what expect.lp asks of a changed scenario; None when nothing.
-
-    Left out are: `fails`, and beside it `unmoved` and `within`, which speak of the failure; `unmoved` of a thing that
-    is away; `within` when commands are added; and, when a goal for Utak or for things is dropped, where Utak or things
-    must be, because expect.lp speaks of all goals together.
-    """
+    """Return what expect.lp asks of a changed scenario; None when nothing."""
+    # `within` when commands are added; and, when a goal for Utak or for things is dropped, where Utak or things must
+    # be, because expect.lp speaks of all goals together.
     if scenario.expectations is None:
         return None
     failing = should_fail(scenario.expectations)

@@ -46,25 +46,15 @@ class GapSide(StrEnum):
 
 @dataclass(frozen=True)
 class Gap:
-    """A passage of the true floor, or a place in a wall for a new door.
+    """A passage of the true floor, or a place in a wall for a new door."""
 
-    Attributes
-    ----------
-    left, right : its ends on the walls, (x, y); equal for a new door.
-    width : from wall to wall, in squares; 0 for a new door.
-    depth : from one mouth to the other, in squares.
-    wall : WKT of what is moved sideways: the quadrangle between the mouths, or the line through the wall.
-    along : the unit vector from right to left.
-    room : the greatest clearance on the narrower of its sides, in squares: a door is at most so wide.
-    """
-
-    left: XY
+    left: XY  # its ends on the walls, (x, y); equal for a new door
     right: XY
-    width: float
-    depth: float
-    wall: str
-    along: XY
-    room: float
+    width: float  # from wall to wall, in squares; 0 for a new door
+    depth: float  # from one mouth to the other, in squares
+    wall: str  # WKT of what is moved sideways: the quadrangle between the mouths, or the line through the wall
+    along: XY  # the unit vector from right to left
+    room: float  # the greatest clearance on the narrower of its sides, in squares: a door is at most so wide
 
     @property
     def is_new(self) -> bool:
@@ -88,10 +78,7 @@ def floor_of(world: World) -> Any:
 
 
 def passages_of(world: World) -> list[Gap]:
-    """Return the passages of the floor, the narrowest first, then from the south and the west.
-
-    Those between walls alone are among them, also where a fixed thing stands in the way.
-    """
+    """Return the passages of the floor, the narrowest first, then from the south and the west."""
     found = {gap.wall: gap for gap in (*_passages_in(world, world.verge), *_passages_in(world, solid_of(world)))}
     return sorted(found.values(), key=lambda gap: (gap.width, gap.place[1], gap.place[0]))
 
@@ -165,10 +152,7 @@ def _measured_once(solid: Any, rough: Gap) -> Gap:
 
 
 def new_doors_of(world: World) -> list[Gap]:
-    """Return one place for a new door for each two separate parts of the floor that only a wall of verge divides.
-
-    It is where the wall is thinnest, in the middle of the longest straight stretch of that thickness.
-    """
+    """Return one place for a new door for each two separate parts of the floor that only a wall of verge divides."""
     free = ~_covered(solid_of(world), world, 1)
     labels = components(free).labels
     best: dict[tuple[int, int], tuple[int, int, Gap]] = {}
@@ -181,10 +165,7 @@ def new_doors_of(world: World) -> list[Gap]:
 
 
 def _walls_between(labels: Labels, turned: bool) -> Iterator[tuple[tuple[int, int], int, int, Gap]]:
-    """Yield straight walls across the rows of a grid: the parts (two labels), thickness, length, and the door in it.
-
-    turned : whether the grid's rows are the table's columns.
-    """
+    """Yield straight walls across the rows of a grid: the parts (two labels), thickness, length, and the door in it."""
     runs = [
         (int(first), int(second), west, east, row)
         for row, line in enumerate(labels)
@@ -215,11 +196,9 @@ def _blocked_runs(line: Labels) -> Iterator[tuple[int, int]]:
 
 
 def widened(world: World, gap: Gap, side: GapSide, by: float) -> World | None:
-    """Return the world in which a gap is wider by `by` squares; None when that cannot be.
-
-    Only the verge gives way. It cannot be when a fixed thing stands there, when the gap would not be wider after all,
-    or when other parts of the floor would be joined as well.
-    """
+    """Return the world in which a gap is wider by `by` squares; None when that cannot be."""
+    # It cannot be when a fixed thing stands there, when the gap would not be wider after all, or when other parts of
+    # the floor would be joined as well.
     shape = shapely.from_wkt(gap.wall)
     if not gap.is_new and gap.depth < GAP_LENGTH_TOLERANCE:
         shape = _thickened(shape, gap, by)
@@ -286,16 +265,7 @@ def _width(solid: Any, opening: Any, gap: Gap) -> float:
 
 
 def _walls_beside(solid: Any, opening: Any, margin: float, apart: float, gap: Gap) -> list[Any]:
-    """Return what is solid on the left and on the right of a gap's middle.
-
-    Parameters
-    ----------
-    solid : all that is solid.
-    opening : the opening between the walls.
-    margin : how far about it the walls are cut off, in squares.
-    apart : how far from it a wall may be; what stands further away, as before a door, is no wall of it.
-    gap : the gap.
-    """
+    """Return what is solid on the left and on the right of a gap's middle."""
     window = opening.buffer(margin)
     near = solid.intersection(window)
     x0, y0, x1, y1 = window.bounds

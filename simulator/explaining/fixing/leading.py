@@ -29,17 +29,7 @@ LEADING_REASON = "the robot is led here by a command that is given to it"
 
 
 class LedRobot:
-    """A robot whose next command can be given from outside.
-
-    Parameters
-    ----------
-    robot : the robot.
-
-    Attributes
-    ----------
-    given : the command that it gives next; None for what it decides itself.
-    led : whether more commands are going to be given.
-    """
+    """A robot whose next command can be given from outside."""
 
     def __init__(self, robot: RobotProtocol) -> None:
         if not isinstance(robot, FollowingRobotProtocol):
@@ -71,13 +61,7 @@ class LedRobot:
 
 
 class Leader:
-    """Leads one robot to a place.
-
-    Parameters
-    ----------
-    place : the place, on free floor, (x, y) in squares, table frame.
-    make : makes the robot.
-    """
+    """Leads one robot to a place."""
 
     def __init__(self, place: XY, make: RobotMaker) -> None:
         self._place, self._make = place, make
@@ -90,10 +74,7 @@ class Leader:
         return self._robot
 
     def lead(self, session: Session, watch: Callable[[Session], None]) -> bool:
-        """Lead the woken robot of a session to the place. Return whether it arrived.
-
-        watch : called after every step.
-        """
+        """Lead the woken robot of a session to the place. Return whether it arrived."""
         assert self._robot is not None
         for _ in range(MAX_LEADING_COMMANDS):
             if session.table.held is not None:
@@ -122,10 +103,7 @@ def move_towards(offset: XY, heading: int) -> Move:
 
 
 def free_squares(world: World, polygons: dict[str, object] | None = None) -> Bools:
-    """Return the squares of a table that nothing covers, (rows, columns) bool, row 0 in the south.
-
-    polygons : where the movable things are; by default where they are at the start.
-    """
+    """Return the squares of a table that nothing covers, (rows, columns) bool, row 0 in the south."""
     now = {thing.name: thing.polygon for thing in world.movable} if polygons is None else polygons
     free = np.ones((world.height, world.width), np.bool_)
     for shape in (world.verge, *(thing.polygon for thing in world.fixed), *now.values()):
@@ -134,10 +112,8 @@ def free_squares(world: World, polygons: dict[str, object] | None = None) -> Boo
 
 
 def way_between(free: Bools, start: XY, goal: XY) -> list[XY]:
-    """Return the corners of a way over free squares, half a square from walls where that is possible; [] without one.
-
-    The start may stand on a square that is not free, at the edge of the floor: then the way begins beside it.
-    """
+    """Return the corners of a way over free squares, half a square from walls where that is possible."""
+    # [] without one.
     screen = Screen(free)
     begin = _nearest_free(free, start)
     if begin is None or not free[int(goal[1]), int(goal[0])]:

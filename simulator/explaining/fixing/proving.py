@@ -23,34 +23,22 @@ class BudgetEndedError(Exception):
 
 @dataclass(frozen=True)
 class Budget:
-    """Bounds how much may be run.
+    """Bounds how much may be run."""
 
-    Attributes
-    ----------
-    runs : how many runs at most, the unchanged one among them. The same number gives the same answer.
-    seconds : after how many seconds it ends at the latest; None for never. The answer then depends on the machine.
-    """
-
+    # How many runs at most, the unchanged one among them. The same number gives the same answer.
     runs: int = DEFAULT_RUNS
+    # After how many seconds it ends at the latest; None for never. The answer then depends on the machine.
     seconds: float | None = None
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Holds how a changed scenario ended.
+    """Holds how a changed scenario ended."""
 
-    Attributes
-    ----------
-    works : whether the robot ended in `done`, and the expectations that can be asked hold.
-    result : the end of the run; None when the change cannot be made, or the robot could not be led.
-    refuted : the expectation that geometry refutes, so that nothing was run; "" otherwise.
-    led_commands : how many commands were given to lead it.
-    """
-
-    works: bool
-    result: Result | None
-    refuted: str = ""
-    led_commands: int = 0
+    works: bool  # whether the robot ended in `done`, and the expectations that can be asked hold
+    result: Result | None  # the end of the run; None when the change cannot be made, or the robot could not be led
+    refuted: str = ""  # the expectation that geometry refutes, so that nothing was run; "" otherwise
+    led_commands: int = 0  # how many commands were given to lead it
 
 
 IMPOSSIBLE_CHANGE = Outcome(False, None)
@@ -58,25 +46,16 @@ IMPOSSIBLE_CHANGE = Outcome(False, None)
 
 @dataclass
 class VariantProver:
-    """Runs a scenario with changes and remembers how it ended.
+    """Runs a scenario with changes and remembers how it ended."""
 
-    Attributes
-    ----------
-    scenario, settings : the scenario and the options without changes.
-    budget : how much may be run.
-    watch : called after every run with its number, its changes and its outcome.
-    make : makes the robot.
-    runs : how many runs there were.
-    commands : how many commands they took together.
-    """
-
-    scenario: Scenario
+    scenario: Scenario  # the scenario and the options without changes
     settings: Settings
-    budget: Budget
+    budget: Budget  # how much may be run
+    # Called after every run with its number, its changes and its outcome
     watch: Callable[[int, tuple[WorldChange, ...], Outcome], None] = lambda number, changes, outcome: None
-    make: RobotMaker = make_robot
-    runs: int = 0
-    commands: int = 0
+    make: RobotMaker = make_robot  # makes the robot
+    runs: int = 0  # how many runs there were
+    commands: int = 0  # how many commands they took together
     _known: dict[tuple[WorldChange, ...], Outcome] = field(default_factory=dict)
     _proofs: int = 0
     _begun: float = field(default_factory=time.monotonic)
@@ -86,10 +65,8 @@ class VariantProver:
         return variant_of(self.scenario, self.settings, changes)
 
     def outcome(self, changes: tuple[WorldChange, ...]) -> Outcome:
-        """Return how the scenario with some changes ends; it is run unless that is known.
-
-        Raises BudgetEndedError when no run is left.
-        """
+        """Return how the scenario with some changes ends; it is run unless that is known."""
+        # Raises BudgetEndedError when no run is left.
         if changes not in self._known:
             variant = self.variant(changes)
             refuted = "" if variant is None or not changes else refutation(variant.scenario)

@@ -20,33 +20,15 @@ from simulator.scenario.settings import Settings, kb_files_named
 
 @dataclass(frozen=True)
 class RecordedRun:
-    """A run that can be repeated.
+    """A run that can be repeated."""
 
-    Attributes
-    ----------
-    scenario, settings : what determines the run.
-    episode : what was recorded of it.
-    """
-
-    scenario: Scenario
+    scenario: Scenario  # what determines the run
     settings: Settings
-    episode: Episode
+    episode: Episode  # what was recorded of it
 
 
 def recorded_run(name: str, episode: Episode, rule_files: Sequence[str] = ()) -> RecordedRun:
-    """Return the run that an episode records.
-
-    Parameters
-    ----------
-    name : the name of the file, for messages.
-    episode : the episode.
-    rule_files : the paths of the files with users' rules that took part.
-
-    Raises
-    ------
-    BadInputError : the episode has no first step, its header states no scenario, or the rules are other ones.
-    CannotOpenError : a file with rules cannot be read.
-    """
+    """Return the run that an episode records."""
     if not episode.steps:
         raise _damaged(name, "the episode ends before its first step: it does not say where the robot woke")
     head = episode.header
@@ -73,10 +55,7 @@ def start_text(parameters: dict[str, str], claims: Sequence[Sequence[object]]) -
 
 
 def task_from_texts(start: str, goal: str, name: str = "task") -> Task:
-    """Return the task that the texts of start.lp and goal.lp state; raise BadInputError when they state none.
-
-    name : the name in messages.
-    """
+    """Return the task that the texts of start.lp and goal.lp state; raise BadInputError when they state none."""
     sources = [source_from_bytes(f"{name}: {part}", text.encode()) for part, text in (("start", start), ("goal", goal))]
     problems: list[Problem] = []
     facts = []

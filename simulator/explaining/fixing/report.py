@@ -26,10 +26,7 @@ FRAME_NOTE = (
 
 
 def report_text(report: FixReport, depth: Depth) -> str:
-    """Return the answer in words.
-
-    depth : short for the changes alone, long for all that was tried as well.
-    """
+    """Return the answer in words."""
     return "\n".join(_lines(report, depth))
 
 
@@ -63,10 +60,8 @@ def report_values(report: FixReport) -> dict[str, Any]:
 
 
 def is_repeated(report: FixReport) -> bool:
-    """Return whether the run ended as it is recorded, when it was repeated; true for a record without an end.
-
-    A run that was ended by a limit of time has none: it would have gone on.
-    """
+    """Return whether the run ended as it is recorded, when it was repeated; true for a record without an end."""
+    # A run that was ended by a limit of time has none: it would have gone on.
     recorded, before = report.run.episode.result, report.before
     return recorded is None or "seconds" in recorded or (before is not None and before.line["result"] == recorded)
 

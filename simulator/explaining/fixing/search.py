@@ -34,43 +34,28 @@ WorldChanges = tuple[WorldChange, ...]
 
 @dataclass(frozen=True)
 class Fix:
-    """WorldChanges with which the run works.
+    """WorldChanges with which the run works."""
 
-    Attributes
-    ----------
-    changes : the changes.
-    outcome : how the run ends with them.
-    is_smallest : whether it was shown to fail without any of the changes, and with any of the widths one step less.
-    is_least : whether it was shown to fail with any smaller number of steps of a width, not only with one less.
-    """
-
-    changes: WorldChanges
-    outcome: Outcome
+    changes: WorldChanges  # the changes
+    outcome: Outcome  # how the run ends with them
+    # Whether it was shown to fail without any of the changes, and with any of the widths one step less
     is_smallest: bool
-    is_least: bool
+    is_least: bool  # whether it was shown to fail with any smaller number of steps of a width, not only with one less
 
 
 @dataclass(frozen=True)
 class FixReport:
-    """Holds what was found.
+    """Holds what was found."""
 
-    Attributes
-    ----------
-    run : the recorded run.
-    before : how the run ends without changes, when it is repeated; None when the time did not suffice for that.
-    fixes : the changes with which it works.
-    tried : all changes that were tried, with how they ended, in order; those that were found among them.
-    runs, commands : how many runs there were, and how many commands they took.
-    ended : why the search ended early; "" when everything was tried.
-    """
-
-    run: RecordedRun
+    run: RecordedRun  # the recorded run
+    # How the run ends without changes, when it is repeated; None when the time did not suffice for that
     before: Result | None
-    fixes: tuple[Fix, ...]
+    fixes: tuple[Fix, ...]  # the changes with which it works
+    # All changes that were tried, with how they ended, in order; those that were found among them
     tried: tuple[tuple[WorldChanges, Outcome], ...]
-    runs: int
+    runs: int  # how many runs there were, and how many commands they took
     commands: int
-    ended: str
+    ended: str  # why the search ended early; "" when everything was tried
 
     @property
     def is_needless(self) -> bool:
@@ -84,19 +69,7 @@ def find_fixes(
     watch: Callable[[int, WorldChanges, Outcome], None] = lambda number, changes, outcome: None,
     make: RobotMaker = make_robot,
 ) -> FixReport:
-    """Return the smallest changes with which a run would have worked.
-
-    Parameters
-    ----------
-    run : the recorded run.
-    budget : how much may be run. The same number of runs gives the same answer.
-    watch : called after every run with its number, its changes and its outcome.
-    make : makes the robot.
-
-    Returns
-    -------
-    What was found, and what was tried.
-    """
+    """Return the smallest changes with which a run would have worked."""
     prover = VariantProver(run.scenario, run.settings, budget, watch, make)
     search, before, ended = FixSearch(prover), None, ""
     try:
@@ -118,23 +91,14 @@ def find_fixes(
 
 @dataclass
 class FixSearch:
-    """The state of one search.
+    """The state of one search."""
 
-    Attributes
-    ----------
-    prover : runs the changed scenarios.
-    """
-
-    prover: VariantProver
+    prover: VariantProver  # runs the changed scenarios
     _fixes: list[WorldChanges] = field(default_factory=list)
     _ranges: dict[tuple[object, object], GapRange] = field(default_factory=dict)
 
     def more_commands(self, before: Result) -> None:
-        """Find out how many commands suffice, when the run ended because no more were allowed.
-
-        The number is that of the commands of a longer run. With one less the run is the same but for its end: the robot
-        counts its commands only to give up.
-        """
+        """Find out how many commands suffice, when the run ended because no more were allowed."""
         allowed = self.prover.settings.max_steps
         if is_out_of_commands(before, allowed):
             longer = MoreCommands(max(MORE_COMMANDS_FACTOR * allowed, allowed + MIN_MORE_COMMANDS))
@@ -242,10 +206,7 @@ class FixSearch:
         return changes
 
     def _fewest(self, changes: WorldChanges, place: int) -> WorldChanges:
-        """Return working changes with one width as small as possible: with one step less they are shown to fail.
-
-        First the steps just above what geometry allows are tried, further and further up; then the rest is bisected.
-        """
+        """Return working changes with one width as small as possible: with one step less they are shown to fail."""
         change = changes[place]
         assert isinstance(change, Wider)
         fails, works = 0, change.steps

@@ -10,13 +10,7 @@ from simulator.world.world import World
 
 
 def write_scenario(scenario: Scenario, folder: Path | str) -> None:
-    """Write a scenario as a folder that `utak check` accepts; an existing folder must be empty.
-
-    Raises
-    ------
-    CannotOpenError : the folder is not empty, or cannot be written.
-    BadInputError : the scenario is none that files can state; the files show why.
-    """
+    """Write a scenario as a folder that `utak check` accepts; an existing folder must be empty."""
     with whole_folder(Path(folder)) as part:
         for name, text in scenario_files(scenario).items():
             (part / name).write_text(text)

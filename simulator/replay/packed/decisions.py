@@ -18,20 +18,7 @@ CANDIDATE_NUMBER = re.compile(r"\d{1,9}", re.ASCII)
 
 
 def trimmed(entry: Any, detail: tuple[int, int] = DETAILS[0]) -> Any:
-    """Return a decision as a page keeps it: with the facts of its first candidates and of those chosen.
-
-    Parameters
-    ----------
-    entry : an entry of `belief.solved`.
-    detail : how many candidates that were not chosen are kept, those with the least numbers; and how many of the facts
-        that speak of no candidate. A candidate is a number that is the first argument of facts; it is chosen when the
-        answer names it.
-
-    Returns
-    -------
-    The entry. Where facts are left out, a fifth item says how many, and what is said about candidates is kept for those
-    alone whose facts are kept, with 0 for those between them. Entries of other forms are returned as they are.
-    """
+    """Return a decision as a page keeps it: with the facts of its first candidates and of those chosen."""
     if not isinstance(entry, list) or len(entry) != 4:
         return entry
     encoding, facts, answer, about = entry
@@ -64,20 +51,7 @@ def _candidate(fact: Any) -> str:
 def by_encoding(
     solved: list[Any], before: dict[str, Any] | None, routes: Sequence[Any] | None = None
 ) -> dict[str, Any]:
-    """Return the decisions of a step, with each kept by its encoding until the encoding is asked again.
-
-    Parameters
-    ----------
-    solved : `belief.solved` of the step, trimmed.
-    before : what this function returned for the step before; None at first.
-    routes : the points of each route of the step, which a decision among them need not tell once more.
-
-    Returns
-    -------
-    `{"order": [...], "last": {...}}`. `order` has, for each decision, its key in `last`, or the decision itself where
-    it refers to an earlier one or has another form. What encodings were given that were not asked at this step stays in
-    `last`, so that the next time only differences need be told.
-    """
+    """Return the decisions of a step, with each kept by its encoding until the encoding is asked again."""
     last = dict(before["last"]) if before is not None else {}
     order: list[Any] = []
     for entry in solved:

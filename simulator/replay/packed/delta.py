@@ -21,14 +21,6 @@ MAX_MATCHED_PAIRS = 250_000  # pairs of items that are compared to find the shor
 def difference(old: Any, new: Any) -> Any:
     """Return the difference that leads from one JSON value to another one.
 
-    Parameters
-    ----------
-    old, new : JSON values.
-
-    Returns
-    -------
-    The difference, as the docstring of this module describes it.
-
     Examples
     --------
     >>> difference({"a": 1, "b": [1, 2, 3]}, {"b": [1, 3, 4]})

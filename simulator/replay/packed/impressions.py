@@ -27,17 +27,7 @@ MAX_LETTERS = 26  # facts that can explain fields of one impression, by a letter
 
 
 def pack_impression(line: EpisodeLine) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the impression of a step's line, packed, and its belief without what is told by that.
-
-    Parameters
-    ----------
-    line : the line of a step.
-
-    Returns
-    -------
-    A dictionary with the keys `levels` or else `retina`, and `status` and `explained`, as far as they can be packed, of
-    which `explained` is [facts, letters]; and the rest of the belief.
-    """
+    """Return the impression of a step's line, packed, and its belief without what is told by that."""
     belief = dict(line["belief"])
     packed: dict[str, Any] = {}
     retina = "".join(map(str, line["retina"]))
@@ -61,10 +51,7 @@ def pack_impression(line: EpisodeLine) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def expected_status(line: EpisodeLine) -> str:
-    """Return the status that each field most likely has, by what is observed and what was predicted.
-
-    It is `n` where the level is out of bounds, `p` where the bounds are one, else `e`. Without bounds it is `p`.
-    """
+    """Return the status that each field most likely has, by what is observed and what was predicted."""
     least, most = (line["belief"].get(key) for key in ("least", "most"))
     if not all(isinstance(text, str) and re.fullmatch(f"[0-7]{{{FIELD_COUNT}}}", text) for text in (least, most)):
         return "p" * FIELD_COUNT
@@ -76,17 +63,7 @@ def expected_status(line: EpisodeLine) -> str:
 
 
 def level_signs(least: Any, most: Any, retina: str) -> str | None:
-    """Return a text that tells, for each field, the least and the greatest predicted level and the one observed.
-
-    Parameters
-    ----------
-    least, most, retina : the levels, a digit for each field.
-
-    Returns
-    -------
-    One sign for each field at which a bound was observed, three for others. None where a text has another form, or
-    where a least level is above the greatest.
-    """
+    """Return a text that tells, for each field, the least and the greatest predicted level and the one observed."""
     texts = (least, most, retina)
     if not all(isinstance(text, str) and re.fullmatch(f"[0-7]{{{FIELD_COUNT}}}", text) for text in texts):
         return None
@@ -111,10 +88,8 @@ def _exceptions(status: str, expected: str) -> str:
 
 
 def _letters(explained: Any, status: str) -> list[Any] | None:
-    """Return `explained` as its facts and, for each explained field in order, the letter of its fact.
-
-    Returns None where it does not name each field of status `e` just once, in ascending order, by at most 26 facts.
-    """
+    """Return `explained` as its facts and, for each explained field in order, the letter of its fact."""
+    # Returns None where it does not name each field of status `e` just once, in ascending order, by at most 26 facts.
     if not isinstance(explained, dict) or len(explained) > MAX_LETTERS:
         return None
     letter_of: dict[int, str] = {}

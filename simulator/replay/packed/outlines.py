@@ -23,25 +23,15 @@ Edge = tuple[OutlinePoint, OutlinePoint]
 
 
 class SplitFacts(NamedTuple):
-    """The facts of a step, with their outlines apart.
+    """The facts of a step, with their outlines apart."""
 
-    Attributes
-    ----------
-    others : the facts that no outline tells, as they stand, sorted.
-    corners : the corners of the outlines as text, by node.
-    confidences : the percent of each edge, by node; or AS_THE_OTHER_WAY.
-    """
-
-    others: list[str]
-    corners: dict[str, list[str]]
-    confidences: dict[str, list[int]]
+    others: list[str]  # the facts that no outline tells, as they stand, sorted
+    corners: dict[str, list[str]]  # the corners of the outlines as text, by node
+    confidences: dict[str, list[int]]  # the percent of each edge, by node; or AS_THE_OTHER_WAY
 
 
 def split_facts(facts: Sequence[str]) -> SplitFacts | None:
-    """Return the facts with their outlines apart; None when `joined_facts` would not give back just these facts.
-
-    That is so when they are not sorted, when segments form no rings, or when a rectangle is not that of its outline.
-    """
+    """Return the facts with their outlines apart; None when `joined_facts` would not give back just these facts."""
     found: dict[str, dict[int, tuple[Edge, int]]] = {}
     others = []
     for fact in facts:

@@ -36,18 +36,7 @@ Path = tuple[str, ...]  # the keys that lead to a value of a step's line
 def packed_episode(
     episode: Episode, events: Mapping[str, Sequence[int]], trees: Mapping[int, Sequence[Any]] | None = None
 ) -> list[str]:
-    """Return an episode as the texts that a page holds.
-
-    Parameters
-    ----------
-    episode : the episode, with one step at least.
-    events : the steps of each kind of event.
-    trees : explanations by step: lists of `{"text": ..., "children": [...]}`, whose children are of the same form.
-
-    Returns
-    -------
-    The index and the blocks, of ASCII without blanks and without signs that mean something in HTML.
-    """
+    """Return an episode as the texts that a page holds."""
     lines = [slim(line) for line in episode.steps]
     blocks = [lines[first : first + STEPS_PER_BLOCK] for first in range(0, len(lines), STEPS_PER_BLOCK)]
     movable = episode.header["world"]["movable"]
@@ -93,11 +82,8 @@ def slim(value: Any) -> Any:
 
 
 def _bounds(lines: Sequence[EpisodeLine]) -> list[int] | None:
-    """Return the least east and north, and the greatest, of all rectangles, in hundredths of squares, robot frame.
-
-    That of the verge, which reaches as far as the retina, does not count, nor do facts of other forms. Returns None
-    when there are none.
-    """
+    """Return the least east and north, and the greatest, of all rectangles, in hundredths of squares, robot frame."""
+    # Returns None when there are none.
     found: set[str] = set()
     for line in lines:
         found.update(fact for fact in line["belief"]["facts"] if fact.startswith("rect(") and fact[5:11] != "verge,")

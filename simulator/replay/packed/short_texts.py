@@ -16,20 +16,7 @@ LONGEST_SOUGHT_COPY = 273  # bytes; the greatest value, which packs best
 
 
 def short_text(values: Sequence[Any]) -> str:
-    """Return JSON values as one text of ASCII without blanks.
-
-    Parameters
-    ----------
-    values : the values, each of which is written on a line of its own, so that a reader can parse them one by one.
-
-    Returns
-    -------
-    The lines, as a raw stream of LZMA with its mark of the end, in base 85.
-
-    Raises
-    ------
-    ImportError : this Python was built without its module lzma.
-    """
+    """Return JSON values as one text of ASCII without blanks."""
     import lzma  # which a Python that was built from its source may lack
 
     lines = "\n".join(json.dumps(value, separators=(",", ":"), allow_nan=False) for value in values)

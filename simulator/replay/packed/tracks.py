@@ -19,13 +19,7 @@ TrackedRing = Sequence[Sequence[float]]
 
 
 def track_columns(lines: Sequence[EpisodeLine]) -> dict[str, list[Any]]:
-    """Return what a page needs of all steps at once, each as a list over the steps.
-
-    action : the actions as they are. utak : the robot's true places. motion : the true motions; SAME for the way
-    between the places before and after, and a turn about the robot without `about`. place : the believed places; SAME
-    where `predicted_place` tells it, None where there is none. seen_from : the difference by which places of
-    impressions are believed anew, from those before and the place of the step.
-    """
+    """Return what a page needs of all steps at once, each as a list over the steps."""
     found: dict[str, list[Any]] = {name: [] for name in ("action", "motion", "utak", "place", "seen_from")}
     before: EpisodeLine | None = None
     seen: list[Any] = []
@@ -70,16 +64,7 @@ def predicted_place(before: list[float] | None, action: EpisodeLine | None) -> l
 
 
 def posed(ring: TrackedRing, first: TrackedRing) -> list[Any]:
-    """Return the pose of a thing: where its first corner is, and how it is turned against its outline at first.
-
-    Parameters
-    ----------
-    ring, first : the outline of the thing now, and in the header, in squares, table frame.
-
-    Returns
-    -------
-    `[x, y, degrees]`; the outline itself, rounded, where no pose leads to it.
-    """
+    """Return the pose of a thing: where its first corner is, and how it is turned against its outline at first."""
     if len(ring) == len(first):
         (x, y), far = first[0], max(first, key=lambda point: math.dist(point, first[0]))
         now = ring[list(first).index(far)]

@@ -34,23 +34,7 @@ def run_on_dask(
     max_connecting_seconds: float = MAX_CONNECTING_SECONDS,
     max_workerless_seconds: float = MAX_WORKERLESS_SECONDS,
 ) -> Generator[tuple[int, TaskOutcome], None, None]:
-    """Carry tasks out on the workers of a Dask scheduler and yield (index, outcome) as they end.
-
-    A task whose worker is lost is given to another one. Closing the iterator ends what is under way.
-
-    Parameters
-    ----------
-    tasks : the tasks; they begin about in this order.
-    address : of the scheduler, such as tcp://127.0.0.1:8786.
-    preparation : carried out first in each process on the workers.
-    max_connecting_seconds : seconds until the scheduler must answer.
-    max_workerless_seconds : seconds without any worker after which CannotOpenError is raised.
-
-    Raises
-    ------
-    CannotOpenError : `distributed` is not installed; the scheduler does not answer, or is lost; there are no workers;
-        a worker has another state of Utak's code, or cannot run Utak.
-    """
+    """Carry tasks out on the workers of a Dask scheduler and yield (index, outcome) as they end."""
     client = _connect(address, max_connecting_seconds)
     sweep = uuid4().hex
     sent = _Sent(client, address, sweep, tasks, preparation)
@@ -142,10 +126,8 @@ class _WorkerWatch:
         self._threads = self._count()
 
     def threads(self) -> int:
-        """Return the number of threads of all workers, at least 1; ask for it now and then.
-
-        Raises CannotOpenError when there has been no worker for too long, or the scheduler is lost.
-        """
+        """Return the number of threads of all workers, at least 1; ask for it now and then."""
+        # Raises CannotOpenError when there has been no worker for too long, or the scheduler is lost.
         now = time.monotonic()
         if now - self._asked_at >= POLL_SECONDS:
             self._threads, self._asked_at = self._count(), now

@@ -41,18 +41,7 @@ _CREWS = _Crews()
 
 
 def run_task(sweep: str, identity: dict[str, str], preparation: list[Any] | None, task: list[Any]) -> dict[str, Any]:
-    """Carry out a task on this Dask worker and return the outcome as a JSON value, or why it is refused.
-
-    Parameters
-    ----------
-    sweep : the name of the sweep.
-    identity : the client's code and libraries; `utak` and `code` must be the same here.
-    preparation, task : the fields of a `WorkerTask`.
-
-    Returns
-    -------
-    The fields of a `TaskOutcome`, and `differs`: how other libraries differ; or {"mismatch": how the code differs}.
-    """
+    """Carry out a task on this Dask worker and return the outcome as a JSON value, or why it is refused."""
     here = code_identity()
     ours, theirs = ({name: one[name] for name in ("utak", "code")} for one in (here, identity))
     if ours != theirs:

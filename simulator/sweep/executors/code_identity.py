@@ -15,10 +15,7 @@ DIGEST_LENGTH = 16  # hexadecimal digits: two states of the code differ in them 
 
 @cache
 def code_identity() -> dict[str, str]:
-    """Return the versions by name: `utak`, `code` (a digest of its programs and encodings), `python`, and libraries.
-
-    Equal values give equal results for the same scenarios, options and seeds.
-    """
+    """Return the versions by name: `utak`, `code` (a digest of its programs and encodings), `python`, and libraries."""
     return {
         "utak": utak_version(),
         "code": code_digest(Path(PROJECT_FOLDER)),

@@ -22,20 +22,7 @@ class _Ended(NamedTuple):
 def run_in_processes(
     tasks: Sequence[WorkerTask], jobs: int, preparation: WorkerTask | None = None
 ) -> Generator[tuple[int, TaskOutcome], None, None]:
-    """Carry tasks out in worker processes and yield (index, outcome) as they end.
-
-    A process that dies is replaced (see `TaskProcess`). Closing the iterator kills the processes.
-
-    Parameters
-    ----------
-    tasks : the tasks; they begin in this order.
-    jobs : how many processes, at least one; no more are started than there are tasks.
-    preparation : carried out first in each process.
-
-    Raises
-    ------
-    RuntimeError : no worker process can be started.
-    """
+    """Carry tasks out in worker processes and yield (index, outcome) as they end."""
     waiting: queue.SimpleQueue[int] = queue.SimpleQueue()
     ended: queue.SimpleQueue[_Ended] = queue.SimpleQueue()
     for index in range(len(tasks)):

@@ -20,13 +20,7 @@ MAX_ATTEMPTS = 2  # of a task whose process ends: the first end may have had ano
 
 
 class TaskProcess:
-    """A worker process, started when the first task comes. One thread uses it; any other may close it.
-
-    Parameters
-    ----------
-    preparation : carried out first in each new process, outside of the tasks' limits; None for nothing.
-    idle_seconds : the process ends when no task comes for so long; 0 for never.
-    """
+    """A worker process, started when the first task comes. One thread uses it; any other may close it."""
 
     def __init__(self, preparation: WorkerTask | None = None, idle_seconds: float = 0.0) -> None:
         self._preparation, self._idle_seconds = preparation, idle_seconds
@@ -37,11 +31,8 @@ class TaskProcess:
         self._temporary = TemporaryDirectory(prefix="utak-sweep-", ignore_cleanup_errors=True)
 
     def run(self, task: WorkerTask) -> TaskOutcome:
-        """Carry out a task in the process and return the outcome.
-
-        A task whose process ends is carried out once more in a new one; when that ends, too, the task has failed.
-        Raises RuntimeError when no process can be started.
-        """
+        """Carry out a task in the process and return the outcome."""
+        # Raises RuntimeError when no process can be started.
         for _ in range(MAX_ATTEMPTS):
             begun = time.monotonic()
             outcome = self._attempt(task)
@@ -52,10 +43,8 @@ class TaskProcess:
         return outcome
 
     def prepare(self) -> "subprocess.Popen[bytes] | None":
-        """Return the process; start and prepare it, if it does not run. None when this handle was closed.
-
-        Raises RuntimeError when it cannot be started.
-        """
+        """Return the process; start and prepare it, if it does not run. None when this handle was closed."""
+        # Raises RuntimeError when it cannot be started.
         with self._lock:
             process = self._process
             if process is not None and process.poll() is not None:

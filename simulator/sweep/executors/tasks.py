@@ -16,35 +16,21 @@ MAX_REASON_LENGTH = 500  # characters of a failure's reason; a convention
 
 
 class WorkerTask(NamedTuple):
-    """A call of a function by its name.
+    """A call of a function by its name."""
 
-    Attributes
-    ----------
-    function : "module:name"; the function takes one JSON value and returns one. Lists arrive as lists, not as tuples.
-    argument : that JSON value.
-    seconds : the limit of wall-clock time; None for no limit.
-    """
-
+    # "module:name"; the function takes one JSON value and returns one. Lists arrive as lists, not as tuples.
     function: str
-    argument: Any
-    seconds: float | None = None
+    argument: Any  # that JSON value
+    seconds: float | None = None  # the limit of wall-clock time; None for no limit
 
 
 class TaskOutcome(NamedTuple):
-    """The end of a task.
+    """The end of a task."""
 
-    Attributes
-    ----------
-    value : what the function returned; None when the task failed.
-    failure : "" or how it failed: `TOO_LONG`, `DIED` or `RAISED`.
-    reason : why it failed, in words; "" when it did not.
-    seconds : the wall-clock time that it took.
-    """
-
-    value: Any
-    failure: str = ""
-    reason: str = ""
-    seconds: float = 0.0
+    value: Any  # what the function returned; None when the task failed
+    failure: str = ""  # "" or how it failed: `TOO_LONG`, `DIED` or `RAISED`
+    reason: str = ""  # why it failed, in words; "" when it did not
+    seconds: float = 0.0  # the wall-clock time that it took
 
 
 # Carries tasks out and yields (index of the task, outcome) as they end, in any order, each task once. Closing the
@@ -60,10 +46,7 @@ def named_function(name: str) -> Callable[[Any], Any]:
 
 
 def carry_out(task: WorkerTask) -> TaskOutcome:
-    """Call the function of a task in this process, without a limit of time, and return the outcome.
-
-    An exception of the function, or a value that is no JSON, is an outcome that failed.
-    """
+    """Call the function of a task in this process, without a limit of time, and return the outcome."""
     begun = time.monotonic()
     try:
         value = named_function(task.function)(task.argument)

@@ -48,10 +48,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _parts(path: Path) -> list[Path]:
-    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone.
-
-    Files of a task without a world and without expectations, such as the solution of an exercise, are no scenario.
-    """
+    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone."""
     names = ("world.lp", "world.txt", "start.lp", "goal.lp")
     if not path.is_dir() or any((path / name).exists() for name in names):
         return [path]

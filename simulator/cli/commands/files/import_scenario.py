@@ -25,18 +25,11 @@ FORMATS_HELP = (
 
 
 class ImportFormat(NamedTuple):
-    """A format that can be read.
+    """A format that can be read."""
 
-    Attributes
-    ----------
-    module : the name of the module in simulator.importing that reads it.
-    takes : the options that it heeds, besides --scale, --goal and --untrusted.
-    shrinks : whether --scale may be 1/N.
-    """
-
-    module: str
-    takes: tuple[str, ...] = ()
-    shrinks: bool = False
+    module: str  # the name of the module in simulator.importing that reads it.
+    takes: tuple[str, ...] = ()  # the options that it heeds, besides --scale, --goal and --untrusted
+    shrinks: bool = False  # whether --scale may be 1/N
 
 
 FORMATS = {  # by the end of a file's name
@@ -130,18 +123,7 @@ def _options(options: argparse.Namespace) -> "ImportOptions":
 
 
 def scenario_files(imported: "Imported", name: str, goal: str | None = None) -> dict[str, str]:
-    """Return the texts of a scenario's files by their names.
-
-    Parameters
-    ----------
-    imported : what was read.
-    name : the name of the file that was read.
-    goal : facts to put in the place of its goal; then nothing is expected.
-
-    Returns
-    -------
-    world.txt or world.lp, start.lp, goal.lp, and expect.lp when the end can be judged.
-    """
+    """Return the texts of a scenario's files by their names."""
     comments = [f"{imported.title}, from {name}", *imported.notes]
     head = "".join(f"% {_printable(comment)}\n" for comment in comments)
     files = {
