@@ -1,17 +1,15 @@
 """The size of replay pages, and how fast a browser plays them.
 
     python -m benchmarks.episodes.replay [EP.jsonl ...] [--examples NAME,...] [--steps 500,5000] [--noise 0.05]
-        [--runs FOLDER] [--columns]
+        [--runs FOLDER]
 
 For each episode, and for long ones that are put together from runs of an example with noise, one line: the bytes of
-the episode and of its page, what is kept of decisions, and the processor's seconds to make it; then milliseconds of the
-page's main thread in headless Chromium: until the first picture (the best of three), of a seek before the page has read
-ahead (median and worst), of reading ahead in all, and of a seek after that. Each seek is made in three rounds, of which
-the best one counts; between rounds the page is opened anew, or has forgotten the step. The page of the first example is
-made with all lengths, those of the others with the first length alone.
+the episode and of its page, and the processor's seconds to make it; then milliseconds of the page's main thread in
+headless Chromium: until the first picture (the best of three), and of a seek (median and worst). Each seek is made in
+three rounds, of which the best one counts. The page of the first example is made with all lengths, those of the others
+with the first length alone.
 
-Runs differ by their seeds. They are repeated only when they have MIN_STEPS_OF_RUNS steps together, which is as long as
-a block of a page, so that no block has a run twice.
+Runs differ by their seeds. They are repeated only when they have MIN_STEPS_OF_RUNS steps together.
 """
 
 import argparse
@@ -28,42 +26,26 @@ from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks.episodes.columns import column_report
 from benchmarks.harness.browser import CHROMIUM, Browser
 from simulator.cli.main import main as utak
 from simulator.episode.episode import Episode, EpisodeLine, encode, read_episode
-from simulator.replay.packed.packing import STEPS_PER_BLOCK
 from simulator.replay.page import replay_page
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 # With noise these take many steps, and their steps need the most bytes; the first one is the one measured at length.
 LONG_EXAMPLES = ("push_l_tight_door", "push_square_blocked_door", "push_l_next_room")
 MAX_RUN_STEPS = 150  # of one run; a convention
-MIN_STEPS_OF_RUNS = STEPS_PER_BLOCK
-SEEKS = 100  # steps that are looked at in random order after the page has read ahead
-EARLY_SEEKS = 10  # steps that are looked at after a page was opened, before it has read ahead
+MIN_STEPS_OF_RUNS = 500
+SEEKS = 100  # steps that are looked at in random order
 ROUNDS = 3  # in which the same is done; the best time of each seek counts, as other work on the machine disturbs
-# Takes from a page what it would read ahead by.
-NEVER_IDLE = "window.requestIdleCallback = () => 0;"
-HEAD = f"{'episode':<36} steps   episode      page a step   kept    s  first  early worst  ahead  seek worst"
+HEAD = f"{'episode':<36} steps   episode      page a step    s  first  seek worst"
 
 
 class SeekTimes(NamedTuple):
-    """Milliseconds of the page's main thread.
+    """Milliseconds of the page's main thread."""
 
-    Attributes
-    ----------
-    first : until the first picture.
-    early, early_worst : of a seek before the page has read ahead.
-    ahead : of reading ahead, in all.
-    seek, worst : of a seek after that.
-    """
-
-    first: float = math.nan
-    early: float = math.nan
-    early_worst: float = math.nan
-    ahead: float = math.nan
-    seek: float = math.nan
+    first: float = math.nan  # until the first picture
+    seek: float = math.nan  # of a seek, median and worst
     worst: float = math.nan
 
 
@@ -79,7 +61,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--noise", default="0.05", help="noise of the runs that they are made from (default %(default)s)"
     )
     parser.add_argument("--runs", type=Path, help="a folder in which runs are kept, and looked for (default: none)")
-    parser.add_argument("--columns", action="store_true", help="tell also which columns of a page need the bytes")
     given = parser.parse_args(arguments)
     lengths = [int(part) for part in given.steps.split(",") if part]
     examples = [name for name in given.examples.split(",") if name] if lengths else []
@@ -87,17 +68,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         page = Path(folder) / "page.html"
         print(HEAD)
         for path in given.episodes:
-            show(path.stem, read_episode(path), page, given.columns)
+            show(path.stem, read_episode(path), page)
         for name in examples:
             some = lengths if name == examples[0] else lengths[:1]
             whole = long_episode(name, max(some), given.noise, given.runs or Path(folder))
             for steps in some:
                 made = Episode(whole.header, whole.steps[:steps], None)
-                show(f"{name}, noise {given.noise}", made, page, given.columns)
+                show(f"{name}, noise {given.noise}", made, page)
     return 0
 
 
-def show(name: str, episode: Episode, page: Path, columns: bool) -> None:
+def show(name: str, episode: Episode, page: Path) -> None:
     """Print the line of an episode; `page` is where its page is written."""
     before = time.process_time()
     text = replay_page(episode)
@@ -105,36 +86,23 @@ def show(name: str, episode: Episode, page: Path, columns: bool) -> None:
     page.write_text(text, encoding="utf-8")
     size, steps = len(text.encode()), len(episode.steps)
     raw = sum(len(encode(line)) for line in (episode.header, *episode.steps))
-    kept, report = column_report(episode)
     t = timed(page, steps) if CHROMIUM else SeekTimes()
-    row = (
-        f"{name[:36]:<36} {steps:>5} {raw:>9} {size:>9} {size / steps:>6.0f} {kept:>6} {seconds:>4.1f} {t.first:>6.0f}"
-    )
-    print(f"{row}  {t.early:>5.1f} {t.early_worst:>5.1f} {t.ahead:>6.0f} {t.seek:>5.1f} {t.worst:>5.1f}", flush=True)
-    if columns:
-        print("\n".join(report), flush=True)
+    row = f"{name[:36]:<36} {steps:>5} {raw:>9} {size:>9} {size / steps:>6.0f} {seconds:>4.1f}"
+    print(f"{row} {t.first:>6.0f} {t.seek:>5.1f} {t.worst:>5.1f}", flush=True)
 
 
 def timed(page: Path, steps: int) -> SeekTimes:
     """Return what the processor does for a page: see the docstring of this module."""
     chance = random.Random(0)
-    early, late = ([chance.randrange(steps) for _ in range(number)] for number in (EARLY_SEEKS, SEEKS))
-    first, early_rounds = [], []
+    wanted = [chance.randrange(steps) for _ in range(SEEKS)]
+    first = []
     with Browser() as browser:
-        added = browser.call("Page.addScriptToEvaluateOnNewDocument", source=NEVER_IDLE)
         for _ in range(ROUNDS):
             browser.open(page)
             first.append(browser.busy())
-            early_rounds.append([seek(browser, step) for step in early])
-        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=added["identifier"])
-        browser.open(page)
-        browser.wait("utak.ready")
-        ahead = browser.busy() - min(first)
-        rounds = [[seek(browser, step) for step in late] for _ in range(ROUNDS)]
-    before, after = (list(map(min, zip(*found, strict=True))) for found in (early_rounds, rounds))
-    return SeekTimes(
-        min(first), statistics.median(before), max(before), max(ahead, 0.0), statistics.median(after), max(after)
-    )
+        rounds = [[seek(browser, step) for step in wanted] for _ in range(ROUNDS)]
+    best = list(map(min, zip(*rounds, strict=True)))
+    return SeekTimes(min(first), statistics.median(best), max(best))
 
 
 def seek(browser: Browser, step: int) -> float:
@@ -164,6 +132,7 @@ def one_run(example: str, noise: str, seed: int, folder: Path) -> Episode:
     """Return a run of an example; it is looked for in a folder, and kept there."""
     path = folder / f"{example}-{noise}-{seed}.jsonl"
     if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
         options = ["--noise", noise, "--seed", str(seed), "--max-steps", str(MAX_RUN_STEPS), "--log", str(path)]
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             utak(["run", str(FOLDER / example), *options])

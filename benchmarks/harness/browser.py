@@ -108,12 +108,12 @@ class Browser:
         return found
 
     def open(self, path: Path, address: str = "") -> None:
-        """Open a file and wait until it is loaded."""
+        """Open the page of an episode and wait until it is shown, or says that it is damaged."""
         self.call("Page.navigate", url="about:blank")
         self.wait("location.href === 'about:blank' && document.readyState === 'complete'")
         self.events.clear()
         self.call("Page.navigate", url=path.resolve().as_uri() + address)
-        self.wait("location.protocol === 'file:' && document.readyState === 'complete'")
+        self.wait("location.protocol === 'file:' && document.documentElement?.dataset.state !== undefined")
 
     def run(self, expression: str) -> Any:
         """Return the JSON value of an expression of JavaScript."""

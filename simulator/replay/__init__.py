@@ -4,7 +4,7 @@ Modules in reading order:
 
 changes     the facts that changed from step to step
 transcript  an episode as text
-packed      episodes packed for a page, and their events
+events      the steps at which something happened
 page        the page of an episode; its parts for the browser lie in the folder page_parts
 drawing     pictures of the table and of what is believed, as SVG
 gif         an episode as a moving picture

@@ -5,6 +5,7 @@ This is the only module that uses pillow.
 
 import io
 import math
+import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
@@ -13,10 +14,11 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.episode.episode import Episode, EpisodeLine
-from simulator.replay.packed.outlines import SEGMENT
 from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import escape_controls
 
+# An edge of an outline; numbers of at most nine digits.
+SEGMENT = re.compile(r"segment\(([a-z]\w*),(\d{1,9})((?:,-?\d{1,9}){4}),(\d{1,9})\)\.", re.ASCII)
 PANEL_PIXELS = 420  # the width or height of each of the two pictures, whichever is greater
 GAP_PIXELS = 12  # between and around the two pictures
 TEXT_PIXELS = 14  # the height of a line of text

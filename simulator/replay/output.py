@@ -42,14 +42,8 @@ def write_page(
     from simulator.explaining.missing_rules import missing_rules
     from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
 
-    try:
-        lacking = missing_rules(episode.header, rule_files)
-        page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name)
-    except ModuleNotFoundError as error:
-        if error.name not in ("lzma", "_lzma"):
-            raise
-        what = "pages need Python's own module lzma, without which this Python was built; --text does not"
-        raise CannotOpenError(str(path), what) from None
+    lacking = missing_rules(episode.header, rule_files)
+    page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name)
     write_whole(path, page.encode("utf-8"), is_page, PAGE_KIND, force)
     return lacking
 

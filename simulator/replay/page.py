@@ -1,30 +1,36 @@
 """The page of an episode: one HTML file that needs nothing else, neither a server nor a network.
 
-The parts of the page lie in the folder `page_parts` as a browser reads them. They are put together here: what expands
-stands in the page as it is, the player and the episode are packed. A policy in the page allows no script
-and no style but these, and no request at all; so no text of an episode can do anything.
+The parts of the page lie in the folder `page_parts` as a browser reads them. They are put together here. The player
+and the episode stand in the page deflated, and the browser inflates them. A policy in the page allows no script and no
+style but these, and no request at all; so no text of an episode can do anything.
+
+The episode is an index and the lines of its steps, each one line of JSON. The index has `header` and `result`, those of
+the episode; `utak` and `place`, where the robot was and where it believed to be, by step; `anew`, the steps that state
+`seen_from`; `events`, the steps of each kind of event; `bounds`, the least and greatest coordinates of floor and
+things; `trees`, explanations by step.
 """
 
 import base64
 import hashlib
 import html
+import json
 import re
+import zlib
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from string import Template
 from typing import Any
 
-from simulator.episode.episode import Episode
+from simulator.episode.episode import Episode, EpisodeLine
 from simulator.episode.output_files import after_prologue
-from simulator.replay.packed.events import episode_events
-from simulator.replay.packed.packing import packed_episode
-from simulator.replay.packed.short_texts import short_text
+from simulator.replay.events import episode_events
 from simulator.terminal.streams import escape_controls
 
-LOADER = ("expand.js", "loader.js")  # the scripts that stand in a page as they are
-# The scripts that stand in it packed, in the order in which they need one another.
-PLAYER = ("decode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js", "player.js", "start.js")
+LOADER = ("loader.js",)  # the script that stands in a page as it is
+# The scripts that stand in it deflated, in the order in which they need one another.
+PLAYER = ("episode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js", "player.js", "start.js")
 MAX_TITLE_CHARACTERS = 300  # of a title made from an episode's goals; a convention
+MAX_SAFE_INTEGER = 2**53  # the greatest integer that a browser's numbers hold exactly
 
 
 def replay_page(
@@ -46,14 +52,66 @@ def replay_page(
         style_hash=_hash(style),
         loader=loader,
         script_hashes=f"'{_hash(loader)}' '{_hash(player)}'",
-        player=short_text([{"style": style, "body": body, "script": player}]),
-        episode="\n".join(packed_episode(episode, episode_events(episode), trees)),
+        player=_deflated([{"style": style, "body": body, "script": player}]),
+        episode=_deflated([_index(episode, trees or {}), *map(slim, episode.steps)]),
     )
+
+
+def inflated(text: str) -> list[Any]:
+    """Return the JSON values of a text that stands in a page deflated."""
+    return [json.loads(line) for line in zlib.decompress(base64.b64decode(text)).decode("ascii").split("\n")]
+
+
+def slim(value: Any) -> Any:
+    """Return a JSON value as a browser can hold it: whole floats as integers, too great integers as text."""
+    if isinstance(value, float) and value.is_integer() and abs(value) < MAX_SAFE_INTEGER:
+        return int(value)
+    if isinstance(value, int) and abs(value) > MAX_SAFE_INTEGER:
+        return str(value)
+    if isinstance(value, list):
+        return [slim(item) for item in value]
+    if isinstance(value, dict):
+        return {key: slim(item) for key, item in value.items()}
+    return value
 
 
 def is_page(head: bytes) -> bool:
     """Return whether a file with these first bytes is a page of HTML."""
     return re.match(rb"<(!DOCTYPE\s+html|html)\b", after_prologue(head), re.IGNORECASE) is not None
+
+
+def _deflated(values: Sequence[Any]) -> str:
+    """Return JSON values, one a line, as text of a page (`inflated` reads it)."""
+    lines = "\n".join(json.dumps(value, separators=(",", ":"), allow_nan=False) for value in values)
+    return base64.b64encode(zlib.compress(lines.encode("ascii"), 9)).decode("ascii")
+
+
+def _index(episode: Episode, trees: Mapping[int, Sequence[Any]]) -> dict[str, Any]:
+    """Return what a page needs of all steps at once (see the module's description)."""
+    beliefs = [line["belief"] for line in episode.steps]
+    return {
+        "header": slim(episode.header),
+        "result": slim(episode.result),
+        "utak": [line["utak"] for line in episode.steps],
+        "place": [slim(belief.get("place")) for belief in beliefs],
+        "anew": [step for step, belief in enumerate(beliefs) if isinstance(belief.get("seen_from"), list)],
+        "events": episode_events(episode),
+        "bounds": _bounds(episode.steps),
+        "trees": {step: slim(list(told)) for step, told in trees.items()},
+    }
+
+
+def _bounds(lines: Sequence[EpisodeLine]) -> list[int] | None:
+    """Return the least east and north, and the greatest, of all rectangles, in hundredths of squares, robot frame."""
+    boxes = []
+    for fact in {fact for line in lines for fact in line["belief"]["facts"] if fact.startswith("rect(")}:
+        name, *parts = fact[len("rect(") : -len(").")].split(",")
+        if name != "verge" and len(parts) == 4 and all(re.fullmatch(r"-?[0-9]{1,9}", part) for part in parts):
+            boxes.append([int(part) for part in parts])
+    if not boxes:
+        return None
+    west, south, east, north = zip(*boxes, strict=True)
+    return [min(west), min(south), max(east), max(north)]
 
 
 def _part(name: str) -> str:

@@ -40,7 +40,7 @@ function drawTruth(at) {
     group.append(label(at, ring, places.table, held ? `${name} held` : name));
   }
   if (at.layers.has("track")) {
-    group.append(svg("path", { class: "track", d: trackOf(episode.columns.utak.slice(0, step + 1), places.table) }));
+    group.append(svg("path", { class: "track", d: trackOf(episode.utak.slice(0, step + 1), places.table) }));
   }
   return group;
 }

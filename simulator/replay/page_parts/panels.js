@@ -35,7 +35,7 @@ function stepPanel(at) {
   row("touch", touched.length ? touched.join(", ") : "nothing");
   const kinds = Object.entries(episode.events).filter(([, steps]) => steps.includes(step)).map(([kind]) => kind);
   if (kinds.length) row("events", kinds.join(", "));
-  if (episode.result && step === episode.steps - 1) row("end", `${episode.result.verdict}: ${shown(episode.result.reason)}`);
+  if (episode.result && step === episode.utak.length - 1) row("end", `${episode.result.verdict}: ${shown(episode.result.reason)}`);
   return [html("p", { class: "action" }, html("strong", {}, `step ${step}: ${actionInWords(line.action)}`)), html("dl", {}, ...rows)];
 }
 
@@ -143,7 +143,7 @@ function wholeDecision(at, entry) {
 
 // The confidence of a statement at each step as a curve; gaps where it is not believed.
 function coursePanel(at, statement) {
-  const wanted = statement.replace(/\s/g, "").replace(/\)?\.?$/, ""), { steps } = at.episode, values = [];
+  const wanted = statement.replace(/\s/g, "").replace(/\)?\.?$/, ""), steps = at.episode.utak.length, values = [];
   if (!wanted) return [html("p", { class: "quiet" }, "A statement without its confidence, such as shape(o1,square) or kind(o1,object).")];
   for (let step = 0; step < steps; step += 1) {
     const fact = at.episode.line(step).belief.facts.find((one) => one.startsWith(`${wanted},`) && /^\d{1,3}\)\.?$/.test(one.slice(wanted.length + 1)));
@@ -160,7 +160,7 @@ function coursePanel(at, statement) {
 // A decision: the encoding, what it was given, what it answered. One that was taken before is looked up.
 function decision(at, number, entry) {
   if (!Array.isArray(entry)) return html("p", {}, shown(entry));
-  const [name] = entry, again = formerPlace(entry), [, facts, answer, about, left] = wholeDecision(at, entry);
+  const [name] = entry, again = formerPlace(entry), [, facts, answer, about] = wholeDecision(at, entry);
   const named = (atom) => {
     const number = /\((\d{1,9})\)$/.exec(atom), text = number && Array.isArray(about) ? about[Number(number[1])] : undefined;
     return shown(atom) + (typeof text === "string" ? ` (${shown(text)})` : "");
@@ -175,7 +175,6 @@ function decision(at, number, entry) {
     if (again) inside.push(html("p", {}, html("a", { href: `#step=${again[0]}` }, `first decided at step ${again[0]}`)));
     list("answer", answer);
     list("given", facts);
-    if (left) inside.push(html("p", { class: "quiet" }, `${left} more facts, of candidates that were not chosen, are left out here; the episode has them`));
     list("candidates", (about || []).map((one, i) => (one === 0 ? null : `${i}: ${typeof one === "string" ? one : JSON.stringify(one)}`)).filter(Boolean));
     return inside;
   });

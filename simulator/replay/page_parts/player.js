@@ -5,7 +5,7 @@ const LAYERS = { unseen: "unseen", track: "tracks", pathgraph: "pathgraph", rout
 const VIEWS = { side: "side by side", overlay: "overlay", truth: "table alone", belief: "belief alone" };
 
 function startPlayer(episode) {
-  const last = episode.steps - 1, places = placing(episode.header, episode.columns.utak[0]), area = areaOf(episode, places);
+  const last = episode.utak.length - 1, places = placing(episode.header, episode.utak[0]), area = areaOf(episode, places);
   const events = eventsOf(episode), state = { step: -1, timer: null, view: "side", layers: new Set(["unseen", "track", "routes"]) };
   const options = { marks: false, digits: false, inner: false };
   const output = byId("field-text"), fieldNumber = byId("field");
@@ -21,7 +21,6 @@ function startPlayer(episode) {
     state.step = Math.min(Math.max(step, 0), last);
     let line = null;
     try {
-      if (state.step) episode.line(state.step - 1); // read first, as it is faster in this order
       line = episode.line(state.step);
     } catch (error) {
       if (!state.at) throw error;

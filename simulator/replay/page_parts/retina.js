@@ -2,6 +2,7 @@
 
 const ZONES = [[4, 1], [8, 2], [16, 4]]; // how far a zone reaches, and the side of its fields, in squares
 const FIELDS = retinaFields();
+const isDigits = (text) => typeof text === "string" && /^[0-7]{160}$/.test(text);
 const STATUS = { p: "predicted", e: "explained", n: "noise" }, STATUS_MARKS = { explained: "dot", noise: "cross" };
 const ALL_FIELDS = "-16 -16 32 32", INNER_FIELDS = "-8 -8 16 16";
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from simulator.cli.main import main
 from simulator.episode.episode import Episode, read_episode
-from simulator.replay.packed.short_texts import values_of
+from simulator.replay.page import inflated
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = (
@@ -17,10 +17,10 @@ HOSTILE = (
 
 
 def body_of(page: str) -> str:
-    """Return the body of a page as markup, which the page holds packed."""
+    """Return the body of a page as markup, which the page holds deflated."""
     packed = re.search(r'id="player">\n(.*?)\n</script>', page, re.DOTALL)
     assert packed is not None
-    return str(values_of(packed[1])[0]["body"])
+    return str(inflated(packed[1])[0]["body"])
 
 
 def recorded(folder: Path, example: str, *options: str) -> tuple[Path, Episode]:
@@ -57,22 +57,3 @@ def hostile(episode: Episode) -> Episode:
             if chance.random() < 0.5:
                 line["belief"][key] = chance.choice(odd)
     return Episode(header, tuple(steps), None)
-
-
-def same(found: Any, wanted: Any, tolerance: float = 0.0) -> bool:
-    """Return whether two JSON values are equal, numbers within a tolerance."""
-    if isinstance(wanted, dict):
-        return (
-            isinstance(found, dict)
-            and found.keys() == wanted.keys()
-            and all(same(found[key], wanted[key], tolerance) for key in wanted)
-        )
-    if isinstance(wanted, list):
-        return (
-            isinstance(found, list)
-            and len(found) == len(wanted)
-            and all(same(a, b, tolerance) for a, b in zip(found, wanted, strict=True))
-        )
-    if isinstance(wanted, bool) or not isinstance(wanted, int | float):
-        return type(found) is type(wanted) and found == wanted
-    return isinstance(found, int | float) and not isinstance(found, bool) and abs(found - wanted) <= tolerance

@@ -3,7 +3,7 @@
 from typing import Any
 
 from simulator.episode.episode import Episode
-from simulator.replay.packed.events import episode_events
+from simulator.replay.events import episode_events
 
 
 def line(held: str | None = None, facts: tuple[str, ...] = (), **belief: Any) -> dict[str, Any]:

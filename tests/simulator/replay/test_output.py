@@ -17,8 +17,6 @@ from replay_episodes import HOSTILE, ROOT, body_of, hostile
 from simulator.cli.main import main
 from simulator.episode.episode import Episode, encode
 from simulator.explaining.trees import trees_of_episode
-from simulator.replay.packed.events import episode_events
-from simulator.replay.packed.packing import PACKED_BYTES, packed_episode
 from simulator.replay.page import replay_page
 from simulator.replay.transcript import transcript
 from simulator.replay.watching import TableWatch
@@ -156,26 +154,6 @@ def test_moving_pictures_without_pillow_say_what_is_missing(carried: tuple[Path,
     assert not path.exists()
 
 
-def test_pages_without_lzma_say_what_is_missing(carried: tuple[Path, Episode], tmp_path: Path) -> None:
-    """The module is hidden from a process of its own."""
-    program = (
-        "import sys; sys.modules['lzma'] = None; sys.path.insert(0, sys.argv[1])\n"
-        "from simulator.cli.main import main; sys.exit(main(sys.argv[2:]))"
-    )
-    command = [sys.executable, "-c", program, str(ROOT), "replay", str(carried[0]), "--html", str(tmp_path / "a.html")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert (done.returncode, done.stdout) == (66, "")
-    assert "pages need Python's own module lzma" in done.stderr
-    assert "Traceback" not in done.stderr
-
-
-def test_what_a_page_has_besides_its_episode_is_small(carried: tuple[Path, Episode]) -> None:
-    """With PACKED_BYTES of packed steps, a page of 500 steps stays below 150 KB."""
-    episode = carried[1]
-    packed = packed_episode(episode, episode_events(episode))
-    assert len(replay_page(episode)) - sum(map(len, packed)) + PACKED_BYTES < 150_000
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo terminals are of Unix")
 @pytest.mark.parametrize(("rows", "columns", "in_place"), [(60, 100, True), (10, 100, False), (60, 30, False)])
 def test_watch_draws_in_place_where_the_table_has_room(
@@ -213,5 +191,5 @@ def test_every_part_of_the_page_is_in_the_package() -> None:
     from importlib.resources import files
 
     parts = files("simulator.replay") / "page_parts"
-    assert {part.name for part in parts.iterdir()} >= {"page.html", "body.html", "style.css", "player.js", "expand.js"}
+    assert {part.name for part in parts.iterdir()} >= {"page.html", "body.html", "style.css", "player.js", "episode.js"}
     assert all(part.read_text(encoding="utf-8") for part in parts.iterdir())
