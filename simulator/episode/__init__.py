@@ -4,10 +4,7 @@ Modules in reading order:
 
 episode       reading and writing an episode
 record        scenario, commands and motions as values of an episode's lines
-forms         forms of JSON values, and the check of a value
-wellformed    the forms of an episode's lines
-output_forms  the forms of what commands print under --json
-json_schema   forms as JSON Schema
+schema        the JSON Schema of episodes and of what commands print under --json, and the check by it
 program_dump  the decisions of an episode as programs for plain clingo
 output_files  opening files for writing without overwriting anything else
 

@@ -15,9 +15,8 @@ from typing import Any
 
 from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import Source, lies_outside, read_bytes
-from simulator.episode.forms import KeyPath, complaints
 from simulator.episode.output_files import GrowingFile, is_episode
-from simulator.episode.wellformed import END, EPISODE_VERSION, HEADER, STEP, column
+from simulator.episode.schema import EPISODE_VERSION, KeyPath, column, complaints
 
 STANDARD_OUTPUT = "-"  # the value of --log for the standard output
 MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention
@@ -59,7 +58,7 @@ def read_episode(path: Path | str) -> Episode:
             raise _damaged(name, number + 2, f"step {number} is missing")
     problems: list[Problem] = []
     for number, raw in enumerate(lines):
-        form = HEADER if number == 0 else STEP if number < len(rows) else END
+        form = "header" if number == 0 else "step" if number < len(rows) else "end"
         row = rows[number] if number < len(rows) else {"result": result}
         problems += (
             _located(name, number + 1, raw, *complaint)

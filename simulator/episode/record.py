@@ -16,7 +16,7 @@ from kb.language.vocabulary import GOAL_VOCABULARY, START_VOCABULARY, check_fact
 from kb.task.task import Task, task_of
 from kb.world.facts import binding_facts
 from simulator.episode.episode import EpisodeLine
-from simulator.episode.wellformed import EPISODE_VERSION
+from simulator.episode.schema import EPISODE_VERSION
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import Thing, World

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
+from simulator.episode.schema import complaints
 from simulator.sweep.contents import EXPECTATIONS_FILE
-from simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, Executor, TaskOutcome
+from simulator.sweep.executors.tasks import Executor, TaskOutcome
 from simulator.sweep.plan import SweepPlan, SweepRun
 from simulator.sweep.results import ResultRow, ResultsProtocol, RowForm
 
@@ -41,12 +42,6 @@ def problem_of(row: ResultRow) -> str:
     result, failed = row.get("result"), row.get("failed")
     if (result is None) == (failed is None):
         return "it has neither a result nor a failure" if result is None else "it has a result and a failure"
-    if row.get("passed", "") not in (True, False, None):
-        return "passed is true, false or null"
-    if failed is not None:
-        right = isinstance(failed, dict) and failed.get("how") in (TOO_LONG, DIED, RAISED)
-        return "" if right and isinstance(failed.get("reason"), str) else "it does not tell how the run failed"
-    types = {"believed": bool, "verdict": str, "reason": str, "steps": int, "unmet": list}
-    if not isinstance(result, dict) or not all(type(result.get(name)) is kind for name, kind in types.items()):
-        return "a value is missing or of another type"
-    return "" if result.get("achieved", "") in (True, False, None) else "achieved is true, false or null"
+    for path, what in complaints("sweep_row", row):
+        return f"{'.'.join(path)}: {what}" if path else what
+    return ""

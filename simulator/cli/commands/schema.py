@@ -27,10 +27,9 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Print the schema, draft 2020-12."""
-    from simulator.episode.json_schema import document
-    from simulator.episode.output_forms import EPISODE_LINES, NAMED_FORMS
+    from simulator.episode.schema import EPISODE_LINES, document
 
     names = EPISODE_LINES if options.name == "episode" else (options.name,)
     title = "a line of an episode of utak" if options.name == "episode" else f"utak: {options.name}"
-    print(json.dumps(document({name: NAMED_FORMS[name] for name in names}, title, names), indent=2))
+    print(json.dumps(document(names, title), indent=2))
     return exits.SUCCESS

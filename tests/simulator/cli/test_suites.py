@@ -16,8 +16,7 @@ from random_scenes import write_scene
 
 from kb.language.source_text import lies_outside, read_source
 from simulator.cli.main import main
-from simulator.episode.forms import complaints
-from simulator.episode.output_forms import NAMED_FORMS
+from simulator.episode.schema import complaints
 from simulator.terminal import exits
 from simulator.testing.grades import as_csv
 from simulator.testing.record import Wish, without_run
@@ -77,7 +76,7 @@ def test_outcomes_are_one_json_object_and_junit_xml(
     assert main(arguments) == 66
     first = capsys.readouterr().out
     found = json.loads(first)
-    assert list(complaints(NAMED_FORMS["test"], found)) == []
+    assert list(complaints("test", found)) == []
     assert found["exit_code"] == 66
     assert found["counts"] == {"passed": 0, "failed": 2, "bad": 1, "absent": 2, "bug": 0}
     assert found["points"] == {"earned": 2, "possible": 7}  # that of the absent world, too, whose expect.lp is there
@@ -179,7 +178,7 @@ def test_what_a_scenario_is_worth_does_not_depend_on_whether_it_can_be_run(
     for jobs in ("1", "2"):
         assert main(["test", str(scene), str(scene), "--json", "--jobs", jobs]) == 65
         found = json.loads(capsys.readouterr().out)
-        assert list(complaints(NAMED_FORMS["test"], found)) == []
+        assert list(complaints("test", found)) == []
         assert found["points"] == {"earned": 0, "possible": 5}
     assert main(["test", str(scene)]) == 65
     assert capsys.readouterr().out == f"BAD {scene}: 0 of 5 points: see above\n"

@@ -9,10 +9,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from kb.body import DIRECTIONS
+from kb.evidence.reason import ReasonKind
+from kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
 from simulator.cli.commands.schema import SCHEMA_NAMES
 from simulator.cli.main import main
-from simulator.episode.forms import accepts
-from simulator.episode.output_forms import EPISODE_LINES, NAMED_FORMS
+from simulator.episode.schema import EPISODE_LINES, EPISODE_VERSION, accepts, definitions
+from simulator.scenario.settings import PATH_CHOICES
 
 jsonschema = pytest.importorskip("jsonschema")
 ROOT = Path(__file__).resolve().parents[3]
@@ -72,7 +75,7 @@ def test_every_line_of_real_episodes_has_its_form(lines: list[dict[str, Any]], v
 
 
 def test_every_key_of_a_real_belief_is_described(lines: list[dict[str, Any]], validators: dict[str, Any]) -> None:
-    described = validators["step"].schema["$defs"]["step"]["properties"]["belief"]["properties"]
+    described = validators["step"].schema["$defs"]["belief"]["properties"]
     assert {key for line in lines if form_of(line) == "step" for key in line["belief"]} <= set(described)
 
 
@@ -94,7 +97,7 @@ def test_outputs_of_commands_have_the_forms(
     for name, values in outputs.items():
         for value in values:
             assert [error.message for error in validators[name].iter_errors(value)] == []
-            assert accepts(NAMED_FORMS[name], value)
+            assert accepts(name, value)
             for key in value:
                 assert not validators[name].is_valid({k: v for k, v in value.items() if k != key})
 
@@ -108,24 +111,24 @@ def test_trees_of_reasons_and_sweeps_have_the_forms(
     trees = [printed(capsys, "explain", log, "--json", *words) for words in questions]
     for tree in trees:
         assert [error.message for error in validators["explain"].iter_errors(tree)] == []
-        assert accepts(NAMED_FORMS["explain"], tree)
+        assert accepts("explain", tree)
     deep = next(tree for tree in trees if any("rests_on" in below for below in tree.get("rests_on", ())))
     lower = next(below for below in deep["rests_on"] if "rests_on" in below)["rests_on"][0]
     for damage in ({"kind": "guess"}, {"claim": None}, {"rests_on": {}}, {"rests_on": [{}]}):
         kept = {key: lower.get(key) for key in damage}
         lower |= damage
-        assert not validators["explain"].is_valid(deep) and not accepts(NAMED_FORMS["explain"], deep)
+        assert not validators["explain"].is_valid(deep) and not accepts("explain", deep)
         lower |= kept
         for key in (key for key, value in kept.items() if value is None):
             del lower[key]
-    assert accepts(NAMED_FORMS["explain"], deep)
+    assert accepts("explain", deep)
     sweep = ["sweep", scenario, "--seeds", "0:2", "--max-steps", "1", "-o", str(rows), "--json"]
     summary = printed(capsys, *sweep)
     lines = [json.loads(line) for line in rows.read_text().splitlines()][1:]
     assert len(lines) == 2
     for name, value in (("sweep", summary), ("sweep_row", lines[0]), ("sweep_row", {**lines[1], "result": None})):
         assert [error.message for error in validators[name].iter_errors(value)] == []
-        assert accepts(NAMED_FORMS[name], value)
+        assert accepts(name, value)
         for key in value:
             assert not validators[name].is_valid({k: v for k, v in value.items() if k != key})
 
@@ -167,18 +170,29 @@ def test_schema_and_check_agree_about_damaged_lines(
     else:
         value = data.draw(VALUES.filter(lambda one: not has_whole_floats(one)))
         holder[key] = value
-    assert validators[name].is_valid(line) == accepts(NAMED_FORMS[name], line)
+    assert validators[name].is_valid(line) == accepts(name, line)
 
 
 def test_further_keys_are_accepted_by_both(lines: list[dict[str, Any]], validators: dict[str, Any]) -> None:
     line = copy.deepcopy(lines[1])
     line["newer"] = line["belief"]["newer"] = {"anything": [1.5, None]}
     assert validators["step"].is_valid(line)
-    assert accepts(NAMED_FORMS["step"], line)
+    assert accepts("step", line)
     for key in set(line["belief"]) - {"facts"}:
         del line["belief"][key]  # an older episode
         assert validators["step"].is_valid(line)
-        assert accepts(NAMED_FORMS["step"], line)
+        assert accepts("step", line)
+
+
+def test_words_of_the_schema_are_those_of_the_code() -> None:
+    known = definitions()
+    assert known["result"]["properties"]["verdict"]["enum"] == list(VERDICT_WORDS)
+    assert known["options"]["properties"]["paths"]["enum"] == list(PATH_CHOICES)
+    assert known["explain"]["properties"]["kind"]["enum"] == list(map(str, ReasonKind))
+    assert known["header"]["properties"]["version"]["enum"] == [EPISODE_VERSION]
+    assert known["world"]["properties"]["table"]["items"]["maximum"] == MAX_TABLE_SIDE
+    grasp = next(one["then"] for one in known["action"]["allOf"] if "direction" in one["then"].get("properties", {}))
+    assert grasp["properties"]["direction"]["enum"] == list(DIRECTIONS)
 
 
 def test_an_unknown_name_is_misuse() -> None:

@@ -15,8 +15,7 @@ import utak
 from benchmarks.harness.reasons import complaints
 from simulator.cli.main import main
 from simulator.episode.episode import Episode, encode, read_episode
-from simulator.episode.forms import accepts
-from simulator.episode.output_forms import NAMED_FORMS
+from simulator.episode.schema import accepts
 from simulator.explaining.questions import questions_of_episode
 from simulator.replay.transcript import transcript
 
@@ -62,7 +61,7 @@ def test_the_block_is_planned_to_be_moved_aside_and_then_the_plan_goes_on(
     run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     first = json.loads(printed(capsys, "plan", str(run / "ep.jsonl"), "--at", "1", "--json"))
-    assert accepts(NAMED_FORMS["plan"], first)
+    assert accepts("plan", first)
     plan = first["plan"]
     assert [step["step"] for step in plan["steps"]][1:] == ["carry(o1,g1_r2)", "arrive(g2_r1)"]
     assert plan["steps"][0]["step"].startswith("clear(o2,spot")
@@ -87,7 +86,7 @@ def test_before_the_object_is_found_the_plan_is_to_find_it(run: Path, capsys: py
     said = capsys.readouterr()
     assert "step 0 has no plan that attains all goals" in said.err
     found = json.loads(said.out)
-    assert accepts(NAMED_FORMS["plan"], found)
+    assert accepts("plan", found)
     assert (found["plan"]["found"], found["plan"]["cost"]) == (False, None)
     assert [step["step"] for step in found["plan"]["steps"]] == ["find(g1)", "arrive(g2_r1)"]
     assert [goal["attained"] for goal in found["plan"]["goals"]] == [False, True]
@@ -243,7 +242,7 @@ def test_where_no_plan_was_found_the_unmet_goal_and_what_was_refuted_are_told(
     log = tmp_path / "ep.jsonl"
     assert main(["run", str(tmp_path), "--max-steps", "3", "--log", str(log)]) == 75
     found = json.loads(printed(capsys, "plan", str(log), "--json", code=1))
-    assert accepts(NAMED_FORMS["plan"], found)
+    assert accepts("plan", found)
     assert found["plan"]["found"] is False and not any("carry" in one["step"] for one in found["plan"]["steps"])
     assert [goal["name"] for goal in found["plan"]["goals"] if not goal["attained"]] == ["g1"]
     assert {one["step"] for one in found["plan"]["refuted"]} == {"carry(o1,g1_r2)"}

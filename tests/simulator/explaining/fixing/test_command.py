@@ -7,8 +7,7 @@ import pytest
 
 from simulator.cli.main import main
 from simulator.episode.episode import EpisodeLog, read_episode
-from simulator.episode.forms import complaints
-from simulator.episode.output_forms import NAMED_FORMS
+from simulator.episode.schema import complaints
 from simulator.explaining.fixing.changes import Led, variant_of
 from simulator.explaining.fixing.leading import Leader, free_squares, move_towards, way_between
 from simulator.explaining.fixing.proving import Budget, VariantProver
@@ -57,7 +56,7 @@ def test_a_new_door_is_found_and_written(closed: Path, tmp_path: Path, capsys: p
     out, err = capsys.readouterr()
     answer = json.loads(out)
     assert err == ""
-    assert list(complaints(NAMED_FORMS["fix"], answer)) == []
+    assert list(complaints("fix", answer)) == []
     assert answer["repeated"] and not answer["needless"] and answer["ended"] == ""
     (fix,) = answer["fixes"]
     (change,) = fix["changes"]
