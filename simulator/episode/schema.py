@@ -17,7 +17,7 @@ LineComplaint = tuple[KeyPath, str]  # the place of a value, and what is wrong w
 EPISODE_LINES = ("header", "step", "end")  # the names of the lines of an episode
 EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 REFERENCE = "#/$defs/"
-_TYPES: dict[str, tuple[type | tuple[type, ...], str]] = {
+_TYPES: dict[str, tuple[Any, str]] = {
     "object": (dict, "an object"),
     "array": (list, "a list of values"),
     "string": (str, "a text"),
@@ -94,14 +94,14 @@ def _of_type(schema: Schema, value: Any, at: KeyPath) -> Iterator[LineComplaint]
     kind, (types, word) = schema["type"], _TYPES[schema["type"]]
     if not isinstance(value, types) or (isinstance(value, bool) and kind != "boolean"):
         yield at, f"{schema.get('title', word)} is wanted"
-    elif kind in ("number", "integer") and "minimum" in schema:
+    elif isinstance(value, int | float) and "minimum" in schema:
         if not schema["minimum"] <= value <= schema["maximum"]:  # true for NaN and infinity, too
             yield at, f"{word} from {schema['minimum']} to {schema['maximum']} is wanted"
-    elif kind == "string":
+    elif isinstance(value, str):
         long = len(value) > schema.get("maxLength", len(value))
         if long or ("pattern" in schema and not re.search(schema["pattern"], value)):
             yield at, f"{schema.get('title', word)} is wanted"
-    elif kind == "array":
+    elif isinstance(value, list):
         yield from _of_list(schema, value, at)
 
 
