@@ -131,10 +131,9 @@ class AbsenceExplainer:
 
     def _reason_of(self, fact: str, found: Absence, in_way: tuple[Reason, ...], step: int) -> Reason:
         """Return an absence as a reason. in_way : the reasons of what is in the way."""
-        needed = tuple(
-            Reason(f"missing: {given}", "with it, and without what is in the way, it would hold", ReasonKind.REJECTED)
-            for given in found.missing
-        )
+        several, without = len(found.missing) > 1, ", and without what is in the way," if found.in_way else ""
+        so = f"with {'all that is missing' if several else 'it'}{without} {found.atom} would hold"
+        needed = tuple(Reason(f"missing: {given}", so, ReasonKind.REJECTED) for given in found.missing)
         rival = (Reason(found.rival.atom, found.rival.sentence, ReasonKind.REJECTED),) if found.rival else ()
         data = {
             "encoding": found.encoding,
@@ -156,8 +155,12 @@ class AbsenceExplainer:
             planned = any(atom_parts(one)[0] in TASK_PLAN_NAMES for one in self._facts.record.steps[step].facts)
             because = "the task plan does not state it" if planned else "there is no task plan at this step"
             because += "; it states this" if instead else ""
+        elif name == "held" and (last := self._last_held(fact, step)) is not None:
+            because = f"it was in hand up to step {last} and is no longer" + ("; this is, instead" if instead else "")
         elif name == "held" and instead:
-            because = "the robot did not grasp it; this is in hand instead"
+            because = "it was never in hand up to this step; this is in hand instead"
+        elif name == "movable" and instead:
+            because = "it would have to be moved, or seen not to move, for that; this is believed instead"
         elif name in ("door", "connects", "width") and not instead:
             because = "doors are necks of the floor, by kb/asp/rooms.lp, and no neck was measured so far"
         elif instead:
@@ -168,6 +171,10 @@ class AbsenceExplainer:
             because = "no such thing is believed to be there at this step"
         data = {"missing": [fact], "in_way": [reason.claim for reason in instead], "partial": False, "found": True}
         return Reason(f"not {fact}", because, ReasonKind.NEGATION, f"step {step}", instead, data)
+
+    def _last_held(self, fact: str, step: int) -> int | None:
+        """Return the last step before another one at which a thing was in hand; None when it never was."""
+        return next((n for n in range(step - 1, -1, -1) if fact in self._facts.record.steps[n].fact_set), None)
 
     def _alternatives(self, fact: str, step: int) -> Iterator[Reason]:
         """Yield the reasons of believed facts of the same predicate about the same thing."""

@@ -101,7 +101,12 @@ class FactExplainer:
         if name == "bound":
             return self._meaning_reasons(arguments[0], arguments[1], step)
         if name in ("offset", "in", "rect") and node == ROOT_NODE:
-            return [self._pose_reason(step)]
+            return [self._pose_reason(step), *self._facts([f"room({arguments[1]})"] * (name == "in"), step)]
+        if name == "room":
+            return self._room_reasons(node, step)
+        if name == "unseen":
+            counts = f"the counts of the impressions up to {step} leave them open"
+            return [Reason(f"{arguments[1]} squares of {node} are open", counts, ReasonKind.MEASURED, f"step {step}")]
         return self._other_reasons(name, arguments, step)
 
     def _meaning_reasons(self, parameter: str, node: str, step: int) -> list[Reason]:
@@ -123,7 +128,7 @@ class FactExplainer:
     def _other_reasons(self, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return what facts rest on that geometry measures alone: places, outlines, rooms and the pathgraph."""
         node = arguments[-1] if name == "child" else arguments[0]
-        if name in ("room", "unseen", "link", "junction"):
+        if name in ("link", "junction"):
             node = FLOOR_NODE
         if node == ROOT_NODE:
             return [Reason("the robot is the root of the world model", "", ReasonKind.CONVENTION)]
@@ -132,6 +137,15 @@ class FactExplainer:
         if name == "in":
             return [squares_reason(self.record, step, node), *self._facts([f"room({arguments[1]})"], step)]
         return [squares_reason(self.record, step, node)]
+
+    def _room_reasons(self, room: str, step: int) -> list[Reason]:
+        """Return why a part of the floor is a room: the doors that bound it, as far as they are believed."""
+        now = self.record.steps[step]
+        doors = [atom_parts(fact)[1][0] for fact in now.facts if fact.startswith("connects(") and f",{room}," in fact]
+        ends = f"{room} ends at walls, at what was not seen yet, or at necks that are not sure enough to be doors"
+        parted = [] if doors else [Reason("no believed door bounds it", ends, ReasonKind.MEASURED, f"step {step}")]
+        floor = squares_reason(self.record, step, FLOOR_NODE)
+        return [*self._facts([f"door({door})" for door in doors], step), *parted, floor]
 
     def _kind_reasons(self, node: str, kind: str, confidence: str, step: int) -> list[Reason]:
         """Return why a node is of a kind: the interpretation of its region, or that it was moved."""
@@ -163,7 +177,9 @@ class FactExplainer:
 
     def _door_reasons(self, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a door is believed: the neck of the floor that rooms.lp takes for a door."""
-        door = arguments[1] if name == "crosses" else arguments[0]
+        if name == "crosses":
+            return self._facts([f"link({arguments[0]},", f"threshold({arguments[1]},"], step)
+        door = arguments[0]
         ends = self.record.steps[step].necks.get(door)
         for number in range(step, -1, -1):
             for call in reversed(self.record.decisions(number)):
@@ -196,9 +212,10 @@ class FactExplainer:
             tried = self._motion_reasons(node, step)
             if tried:
                 return tried
-        squares = squares_reason(self.record, step, node)
+            hardly = "what is less likely an object than not is stated not to be movable"
+            return [Reason("it was never tried", hardly, ReasonKind.CONVENTION), *self._facts([f"kind({node},"], step)]
         untried = Reason("it was never tried", "without a trial both are as likely", ReasonKind.CONVENTION)
-        return [untried, squares]
+        return [untried, squares_reason(self.record, step, node)]
 
     def _grasp_reasons(self, node: str, step: int) -> list[Reason]:
         """Return why a node is believed to be in hand: the newest grasp."""

@@ -12,7 +12,7 @@ from kb.language.atoms import atom_parts
 from kb.tracing.decisions import SolverCall
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
-TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "kept", "not_through"})  # what start.lp and goal.lp say
+TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "kept"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
@@ -22,7 +22,7 @@ AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to;
 DECIDED_INPUTS = frozenset({
     "horizon", "place", "aside", "asked", "rank", "wish", "fulfils", "about", "order", "meant_before", "may_mean",
     "missing", "unclear", "waits", "stuck", "came_to", "holds", "thing", "goal", "bound_before", "planned",
-    "given_up",
+    "given_up", "not_through",
 })  # fmt: skip
 PARAMETER_INPUTS = frozenset(
     {"bound_before", "planned", "given_up"}

@@ -9,7 +9,7 @@ from kb.evidence.record import Record
 from kb.language.atoms import atom_parts
 from kb.language.vocabulary import PLAN_PREDICATES, ROBOT
 from kb.tracing.decisions import SolverCall
-from kb.world.stated_plan import SETTLING_WORDS, stated_plan
+from kb.world.stated_plan import SETTLING_WORDS, circumstance_in_words, stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
@@ -151,13 +151,15 @@ def _place(refuted: str) -> str:
 def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:
     """Return a step of the plan, a refutation or the cost in words; "" for other facts of the plan."""
     told = name in ("plan", "refuted", "price")
+    if name == "given":
+        return f"refutation {arguments[0]} holds while {circumstance_in_words(arguments[1])}"
     plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if told else None
     if plan is None:
         return ""
     if name == "price":
         return plan.cost_words
     if name == "plan":
-        return next((f"{one.words}; {one.certainty}" for one in plan.steps if str(one.number) == arguments[0]), "")
+        return next((one.explained for one in plan.steps if str(one.number) == arguments[0]), "")
     return next((one.words for one in plan.refutations if str(one.number) == arguments[1]), "")
 
 

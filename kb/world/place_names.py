@@ -3,17 +3,18 @@
 Rules of users, questions and plans that name d2 mean the same door in the whole run.
 """
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from shapely import LineString
 
-from geometry.kernels.arrays import XY, Longs
+from geometry.kernels.arrays import Longs
 from kb.world.model import WorldModel
 from kb.world.rooms import NO_ROOM, Rooms
 
-SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was and as it is believed now; a convention
+SAME_DOOR = 1.5  # squares between the middle of a door's neck, as it was or is believed now, and the other neck
+WAKING_ROOM = 1  # the number of the room in which the robot woke, as kb/asp/belief.lp says
 MIN_SHARE = 0.25  # of a room's squares that are in another one, for it to be the same room; a convention
 CODE_BASE = 1 << 20  # more than the squares of any table's side: a square's (east, north) as one number
 
@@ -22,22 +23,23 @@ class PlaceNames:
     """Remembers where each door and each room was believed last, in the robot frame, and names new ones."""
 
     def __init__(self) -> None:
-        self._doors: dict[int, XY] = {}  # by the number of a door: the middle of its neck
+        self._doors: dict[int, LineString] = {}  # by the number of a door: its neck, from wall to wall
         self._rooms: dict[int, Longs] = {}  # by the number of a room: its squares, each as one number, sorted
 
     def named(self, rooms: Rooms, model: WorldModel) -> Rooms:
         """Return rooms and doors under the names that they have for good; remember where they are."""
         found = {int(n): _squares_of(int(n), rooms, model) for n in np.unique(rooms.labels) if n != NO_ROOM}
-        numbers = {NO_ROOM: NO_ROOM} | self._same_rooms(found)
+        home = int(rooms.labels[model.view.locate(*model.frame.origin)])
+        numbers = {NO_ROOM: NO_ROOM} | self._same_rooms(found, {home: WAKING_ROOM} if home in found else {})
         for number in found:
-            numbers.setdefault(number, max([*self._rooms, *numbers.values()], default=0) + 1)
+            numbers.setdefault(number, max([WAKING_ROOM, *self._rooms, *numbers.values()]) + 1)
         for number in sorted({side for door in rooms.doors for side in door.sides} - numbers.keys()):
             numbers[number] = max([*self._rooms, *numbers.values()]) + 1
         self._rooms |= {numbers[number]: squares for number, squares in found.items()}
-        places = [model.place_to_utak(*door.place) for door in rooms.doors]
-        known = self._same_doors(places)
-        for index, place in enumerate(places):
-            self._doors[known.setdefault(index, max(self._doors, default=0) + 1)] = place
+        necks = [LineString([model.place_to_utak(*door.a), model.place_to_utak(*door.b)]) for door in rooms.doors]
+        known = self._same_doors(necks)
+        for index, neck in enumerate(necks):
+            self._doors[known.setdefault(index, max(self._doors, default=0) + 1)] = neck
         doors = tuple(
             replace(door, name=f"d{known[index]}", sides=(numbers[door.sides[0]], numbers[door.sides[1]]))
             for index, door in enumerate(rooms.doors)
@@ -46,29 +48,30 @@ class PlaceNames:
         table[list(numbers)] = list(numbers.values())
         return replace(rooms, doors=doors, labels=table[rooms.labels])
 
-    def _same_rooms(self, found: Mapping[int, Longs]) -> dict[int, int]:
+    def _same_rooms(self, found: Mapping[int, Longs], same: dict[int, int]) -> dict[int, int]:
         """Return the numbers that rooms had before, by their present ones; each at most once."""
         shares = [
             (-np.isin(squares, now, assume_unique=True).mean(), known, number)
             for known, squares in self._rooms.items()
             for number, now in found.items()
         ]
-        same: dict[int, int] = {}
         for share, known, number in sorted(shares):
             if -share >= MIN_SHARE and number not in same and known not in same.values():
                 same[number] = known
         return same
 
-    def _same_doors(self, places: list[XY]) -> dict[int, int]:
-        """Return the numbers that doors at some places had before, by the index of the place; each at most once."""
+    def _same_doors(self, necks: Sequence[LineString]) -> dict[int, int]:
+        """Return the numbers that doors at some places had before, by the index of the neck; each at most once."""
+        # What was seen of its walls since may have made a neck narrower or wider.
         away = [
-            (math.dist(place, known), number, index)
-            for index, place in enumerate(places)
+            (neck.centroid.distance(known.centroid), number, index)
+            for index, neck in enumerate(necks)
             for number, known in self._doors.items()
+            if min(neck.distance(known.centroid), known.distance(neck.centroid)) <= SAME_DOOR
         ]
         same: dict[int, int] = {}
-        for distance, number, index in sorted(away):
-            if distance <= SAME_DOOR and index not in same and number not in same.values():
+        for _, number, index in sorted(away):
+            if index not in same and number not in same.values():
                 same[index] = number
         return same
 

@@ -11,6 +11,11 @@ from kb.language.terms import Fact
 from kb.language.vocabulary import PLAN_PREDICATES, check_facts
 
 PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
+STUCK_WORDS = {  # what the robot may be stuck with beside goals, in words; goals keep their names
+    "robot": "the robot's own goals",
+    "all": "all goals for objects together",
+    "plan": "what users' rules leave of the plan",
+}
 SETTLING_WORDS = {  # steps that settle something, in words; {} is what they settle
     "find": "what {} is about is looked for",
     "pursue": "the robot sees how {} can hold",
@@ -19,6 +24,11 @@ SETTLING_WORDS = {  # steps that settle something, in words; {} is what they set
     "try": "things that may be several are felt all round, and pushed each way where they did not move, for {}",
     "feel": "walls are felt that may be things, for {}",
     "bare": "what stands before walls that were never felt is moved away, for {}",
+}
+CERTAINTY_WORDS = {
+    "verified": "geometry found a way over squares that are each free with 94 percent or more",
+    "hoped": "geometry found a way over floor that is only hoped to be free",
+    "not asked": "geometry was not asked for its way when the plan was made",
 }
 HERE_PLACE = "here"  # the place of everything where it was when the plan was made
 START_WORD = "start"  # in stood(start): the robot stands where it was when the plan was made
@@ -45,8 +55,13 @@ class PlanStep(NamedTuple):
 
     @property
     def certainty(self) -> str:
-        """The answer of geometry in words: `verified`, `hoped` or `not asked`."""
+        """The answer of geometry in a word: `verified`, `hoped` or `not asked`."""
         return "verified" if self.verified else "not asked" if self.commands is None else "hoped"
+
+    @property
+    def explained(self) -> str:
+        """The step in words, with what geometry said of its way; a step that settles something has none."""
+        return self.words if self.settles else f"{self.words}; {CERTAINTY_WORDS[self.certainty]}"
 
     @property
     def line(self) -> str:
@@ -67,7 +82,7 @@ class PlanStep(NamedTuple):
         name, _, rest = self.step.partition("(")
         subject, _, place = rest.removesuffix(")").partition(",")
         if name in SETTLING_WORDS:
-            return SETTLING_WORDS[name].format(subject)
+            return SETTLING_WORDS[name].format(STUCK_WORDS.get(subject, subject))
         goals = f"to where {' and '.join(self.serves)} holds" if self.serves else f"to {place or subject}"
         if name == "arrive":
             return f"the robot goes {goals}"
@@ -84,7 +99,7 @@ class PlanRefutation(NamedTuple):
     @property
     def words(self) -> str:
         """The refutation in words."""
-        told = " and ".join(map(_circumstance_in_words, self.circumstances))
+        told = " and ".join(map(circumstance_in_words, self.circumstances))
         return f"{self.step} is refuted by what was known then" + (f", while {told}" if told else "")
 
 
@@ -237,8 +252,8 @@ def _by_number(name: str) -> tuple[str, int, str]:
     return letters, int(digits) if digits else -1, name
 
 
-def _circumstance_in_words(circumstance: str) -> str:
-    """Return a circumstance in words."""
+def circumstance_in_words(circumstance: str) -> str:
+    """Return a circumstance of a refutation in words; circumstance : at(N,P), stood(N) or shut(D), as text."""
     (kind, _, rest) = circumstance.removesuffix(")").partition("(")
     name, _, place = rest.partition(",")
     if kind == "at":

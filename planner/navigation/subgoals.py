@@ -31,7 +31,10 @@ def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int
         if reached is not None:
             assumed = reached.level and subgoal.kind == SubgoalKind.EXPLORE
             kind = SubgoalKind.PASS if assumed else SubgoalKind(subgoal.kind)
-            facts.append(f"aim({number},{kind},{round(TENTHS_PER_SQUARE * (reached.cost + subgoal.price))})")
+            besides = round(TENTHS_PER_SQUARE * subgoal.price)
+            way = round(TENTHS_PER_SQUARE * (reached.cost + subgoal.price)) - besides
+            facts.append(f"aim({number},{kind},{way})")
+            facts += [f"besides({number},{besides})"] * bool(besides)
             facts.append(f"chance({number},{subgoal.chance})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
     about = [subgoal.what for subgoal in subgoals]

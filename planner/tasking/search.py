@@ -245,6 +245,8 @@ class PlanSearch:
         if errand.subject != ROBOT:
             end = self._problem.places[errand.subject, errand.place]
             found = self._oracle.refusal(state.without(gone), errand.subject, end, shut)
+        barred = sorted({door.name for actor in {ROBOT, errand.subject} for door in self._situation.shut(actor)})
+        found += f", with what the task or a user's rule forbids shut: {' and '.join(barred)}" if barred else ""
         return RefutedStep(errand.subject, origin, errand.place, given, stood, tuple(sorted(shut)), found)
 
     def _depends_on_robot(self, state: TableState, errand: Errand, shut: frozenset[str]) -> bool:

@@ -13,7 +13,9 @@ from benchmarks.harness.reasons import complaints, covers
 from kb.evidence.proving import reason_of_proof
 from kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
 from kb.explanation.values import ProofNode
+from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError
+from kb.world.stated_plan import SETTLING_WORDS
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
 from simulator.explaining.questions import Questions, questions_of_episode
@@ -239,3 +241,34 @@ def test_an_outline_that_crosses_itself_is_refused_and_raises_nothing_else(run: 
         assert questions.why("rect(o9, A, B, C, D)").rests_on
     except BadInputError as refused:
         assert "why:1:" in str(refused)
+
+
+def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questions, list[Any]]) -> None:
+    """What is hardly an object, what was in hand before, what is open, links through doors, and steps of the plan."""
+    questions, lines = run
+    stated = [[fact.removesuffix(".") for fact in line["belief"]["facts"]] for line in lines]
+    held = {fact: step for step, facts in enumerate(stated) for fact in facts if fact.startswith("held(")}
+    for fact, last in held.items():
+        if last < len(lines) - 1:
+            because = questions.why_not(fact, len(lines) - 1).because
+            assert because.startswith(f"it was in hand up to step {last} and is no longer")
+    for step, facts in enumerate(stated):
+        for fact in facts:
+            name, arguments = atom_parts(fact)
+            if name not in ("movable", "unseen", "crosses", "plan", "serves", "room"):
+                continue
+            why = questions.why(fact, step)
+            below = [reason.claim for reason in why.rests_on]
+            if name == "movable" and arguments[1] == "0" and below[0] == "it was never tried":
+                assert [atom_parts(claim)[0] for claim in below[1:]] == ["kind", "kind"]
+            elif name == "unseen":
+                assert [reason.kind for reason in why.rests_on] == [ReasonKind.MEASURED]
+            elif name == "crosses":
+                assert [atom_parts(claim)[0] for claim in below] == ["link", "threshold"]
+            elif name == "plan":
+                settles = arguments[1].partition("(")[0] in SETTLING_WORDS
+                assert settles != (" geometry " in why.because)
+            elif name == "serves":
+                assert why.because == f"step {arguments[0]} of the plan is for goal {arguments[1]}"
+            elif name == "room" and f"connects(d1,{arguments[0]}," in " ".join(facts):
+                assert below[0] == "door(d1)"

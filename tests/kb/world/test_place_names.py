@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from kb.world.place_names import PlaceNames
 from kb.world.rooms import Door, Rooms, rooms_of
 from tests.planner.situations import known_situation
@@ -46,3 +48,25 @@ def test_rooms_keep_their_numbers_when_they_are_parted_and_joined() -> None:
     again = names.named(replace(apart, labels=swapped, doors=doors), model)
     assert (again.labels == apart.labels).all()
     assert [door.sides for door in again.doors] == [door.sides for door in apart.doors]
+
+
+def test_the_room_of_waking_is_r1_and_a_door_that_was_seen_wider_is_the_same() -> None:
+    """The room of waking is small beside what it was joined with; a wall was seen that makes a door narrower."""
+    situation = known_situation(WALKER)
+    model, apart = situation.model, situation.rooms
+    joined = apart.labels.copy()
+    joined[joined > 0] = 1
+    home = int(apart.labels[model.view.locate(*model.frame.origin)])
+    names = PlaceNames()
+    # All is one room at first, and then the part in which the robot woke is the smaller one.
+    small = np.where(apart.labels > 0, 2, 0)
+    row, column = model.view.locate(*model.frame.origin)
+    small[row, column] = 1
+    names.named(replace(apart, labels=joined, doors=()), model)
+    assert names.named(replace(apart, labels=small, doors=()), model).labels[row, column] == home == 1
+    (door, *_) = apart.doors
+    (ax, ay), (bx, by) = door.a, door.b
+    wide = replace(door, b=(bx + 1.5 * (bx - ax), by + 1.5 * (by - ay)))
+    (first,) = names.named(replace(apart, doors=(wide,)), model).doors
+    (then,) = names.named(replace(apart, doors=(door,)), model).doors
+    assert first.name == then.name
