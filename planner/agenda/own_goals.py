@@ -95,17 +95,21 @@ class OwnGoals:
         """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict."""
         # Nothing for no doubt.
         situation, model = turn.situation, turn.situation.model
-        doubt = contradiction = look_at_contradiction(situation)
+        contradiction = look_at_contradiction(situation)
+        doubts = [] if contradiction is None else [contradiction]
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
             node = situation.object_of(x)
             began = model.frame.origin if node is None else transporter.origin_of(x, node, situation)
             covered = robot_square(model) if node is None else model.mask(node.patch)
-            if doubt is None and (doubt := check_elsewhere(goal.name, began, covered, situation)) and node is not None:
+            if doubts:
+                continue
+            doubts = check_elsewhere(goal.name, began, covered, situation)
+            for doubt in doubts if node is not None else ():
                 pushed = push_to_see(node, doubt, situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE), turn)
                 if pushed is not None:
                     return pushed
-        found = turn.look(doubt) or nothing_to_do("nothing is left to look at")
+        found = turn.seek(doubts, lambda: doubts[0].what) if doubts else nothing_to_do("nothing is left to look at")
         if found.verdict is not None and model.held is not None:  # what is in hand may shut the robot in
             return Decision(Release(), f"{model.held} is released, because the robot must walk: {found.why}")
         if found.verdict is not None and contradiction is None:  # as for pieces that no floor is beside

@@ -5,7 +5,7 @@ are where it says, and while the squares that it needs are still believed free.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from geometry.kernels.arrays import XY
@@ -143,19 +143,21 @@ class PlanExecutor:
             return unplanned_act(push, f"{node.name} is taken along", model)
         return self._bring_near(node, squares, situation) if fetch else None
 
-    def detour(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | None:
-        """Return the push with the held object to one of some squares, from which one more leads to the plan's end."""
-        # Returns None when there is no such push, or when what is left of the plan is not one leg of pushes with the
-        # object in hand.
+    def detour(
+        self, node: Node, looks: Sequence[SquareIndices], ends: Mapping[str, End], situation: Situation
+    ) -> Act | None:
+        """Return a push with the held object, in place of the one advised last, that halts where something is seen."""
+        # None when there is no such push (see `detour_push`), or when what is left of the plan is not one leg of pushes
+        # with the object in hand.
         plan = self._plan
         if not self.pull or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
             return None
-        if len(plan.legs) != 1 or not plan.grasped:
+        if len(plan.legs) != 1 or not plan.grasped or self._pushed is None:
             return None
-        if self._pushed is None or not all(isinstance(motion, Translate) for motion in plan.legs[0].motions):
+        pushes = [self._pushed, *(motion for motion in plan.legs[0].motions if isinstance(motion, Translate))]
+        if len(pushes) <= len(plan.legs[0].motions):
             return None
-        end, middle = plan.end.centroid, node.polygon.centroid
-        push = detour_push(node, squares, (end.x - middle.x, end.y - middle.y), situation)
+        push = detour_push(node, looks, ends, pushes, situation)
         return None if push is None else unplanned_act(push, f"{node.name} is taken along", situation.model)
 
     def lead_out(self, node: Node, situation: Situation) -> Act | None:

@@ -14,6 +14,7 @@ from planner.advice import Go, See
 from planner.carrying.plan_executor import Advice
 from planner.deciding.search import contact_subgoals
 from planner.decision import Decision, TaskVerdict, impossible, with_command
+from planner.goals.bounds import telling_squares
 from planner.navigation.fewest_moves import MOVE_COST, FewestMoves
 from planner.navigation.loop_guard import LoopGuard
 from planner.navigation.routes import PlannedRoute, choose_route, find_routes
@@ -22,7 +23,7 @@ from planner.navigation.subgoals import Subgoal, choose
 from planner.screen.moves import CARRYING_PACE, WALKING_PACE, halt_exactly_at, next_move
 from planner.screen.projection import SquareIndices
 from planner.situation import Situation
-from planner.stages import Stage
+from planner.stages import ORIGIN_GOALS, Stage
 from planner.subgoal_kind import SubgoalKind
 
 
@@ -58,7 +59,9 @@ class Pursuer:
         """Return the next command towards the best of some subgoals, or the verdict when none can be reached."""
         # None when no object is to be taken along.
         model = situation.model
-        fewest = FewestMoves(situation.cost_maps) if stage.carried else None
+        rests = any(goal.name in ORIGIN_GOALS for goal in stage.carried)
+        telling = telling_squares(situation) if rests else None
+        fewest = FewestMoves(situation.cost_maps, telling) if stage.carried else None
         round_doors = without_priced_doors(situation)
         while True:
             offered = [_priced(one, situation, round_doors)[0] for one in self._circles.priced(subgoals, model)]
@@ -73,7 +76,7 @@ class Pursuer:
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
             _, within = _priced(subgoal, situation, round_doors)
-            ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps)
+            ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps, telling)
             decision = self._walk(subgoal, stage, within, ways)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End
+from geometry.manipulation.goals import End, Inside
 from kb.body import Grasp, Move, Push, Release, Turn
 from kb.language.terms import Fact
 from kb.world.model import Node
@@ -327,13 +327,12 @@ def _look_at(node: Node, turn: StageTurn) -> Decision | None:
 
 def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision | None:
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for."""
-    # None when there is nothing to see so, or no such push.
-    for look in land.by_the_way.viewpoints():
-        act = turn.executor.detour(node, look.squares, turn.situation)
-        led = _push_to_see(act, look.what, turn)
-        if led is not None:
-            return led
-    return None
+    looks = land.by_the_way.viewpoints()
+    if not looks:
+        return None
+    regions = {name: end for name, end in land.ends.items() if isinstance(end, Inside)}
+    act = turn.executor.detour(node, [look.squares for look in looks], regions, turn.situation)
+    return _push_to_see(act, looks[0].what, turn)
 
 
 def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision | None:

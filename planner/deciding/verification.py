@@ -103,13 +103,12 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
 
 
-def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
-    """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure."""
+def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
+    """Return what to see or feel before something is said to be elsewhere than it began; [] when that is sure."""
     unseen = unseen_beyond_door(goal, began, covered, situation)
     if unseen is not None:
-        return unseen
-    felt = unfelt_bounds(goal, began, covered, situation)
-    return Subgoal(SubgoalKind.INSPECT, *felt[0]) if felt else None
+        return [unseen]
+    return [Subgoal(SubgoalKind.INSPECT, *felt) for felt in unfelt_bounds(goal, began, covered, situation)]
 
 
 def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:

@@ -5,12 +5,14 @@ same; only its colour tells. So a goal that would not hold if such a piece were 
 felt.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
+from kb.world.model import WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from planner.goals.robot_goals import hidden_from
 from planner.screen.projection import shift_mask
@@ -49,14 +51,29 @@ def unfelt_bounds(goal: str, began: XY, covered: Bools, situation: Situation) ->
     return [look for look in looks if len(look.squares)]
 
 
-def _felt_from(mask: Bools, situation: Situation) -> Viewpoint:
-    """Return the floor where the robot did not look yet, and from which it feels some squares; else sees them best."""
-    model, cost_maps = situation.model, situation.cost_maps
+def telling_squares(situation: Situation) -> Bools:
+    """Return the squares from which pieces beside doors are felt that may be things: (rows, columns) bool."""
+    # What is carried goes through some door, and its goal rests on what bounds that.
+    model, ends = situation.model, np.zeros(situation.model.labels.shape, np.bool_)
+    for x, y in (end for door in situation.rooms.doors for end in (door.a, door.b)):
+        ends[max(math.floor(y) - 1, 0) : math.floor(y) + 2, max(math.floor(x) - 1, 0) : math.floor(x) + 2] = True
+    pieces = [mask for mask in model.unfelt_pieces if (mask & ends).any()] if ends.any() else []
+    return _touching(np.any(pieces, axis=0), model) if pieces else np.zeros_like(ends)
+
+
+def _touching(mask: Bools, model: WorldModel) -> Bools:
+    """Return the squares from which a square of a mask is felt: (rows, columns) bool."""
     touching = np.zeros_like(mask)
     for columns, rows in model.frame.directions():
         touching |= shift_mask(mask, -columns, -rows)
+    return touching
+
+
+def _felt_from(mask: Bools, situation: Situation) -> Viewpoint:
+    """Return the floor where the robot did not look yet, and from which it feels some squares; else sees them best."""
+    model, cost_maps = situation.model, situation.cost_maps
     floor = cost_maps.floor if model.held is None else model.space
-    squares = np.flatnonzero(touching & floor & ~cost_maps.looked_from)
+    squares = np.flatnonzero(_touching(mask, model) & floor & ~cost_maps.looked_from)
     if len(squares) or model.told[mask].all():
         return Viewpoint(squares, WHAT_IS_FELT)
     return viewpoint_of(cost_maps, mask, WHAT_IS_FELT)

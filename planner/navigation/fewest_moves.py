@@ -27,9 +27,11 @@ MAX_TRIED_SQUARES = 8  # squares of a subgoal to which two moves are sought (tun
 class FewestMoves:
     """The squares that one or two straight moves reach from where the robot stands; computed at first use."""
 
-    def __init__(self, cost_maps: CostMaps) -> None:
+    def __init__(self, cost_maps: CostMaps, telling: Bools | None = None) -> None:
         """Make an empty store for these cost maps and where the robot stands in them."""
+        # telling : (rows, columns) bool, where a halt feels what must be felt sooner or later; None for none.
         self._cost_maps = cost_maps
+        self._bonus = np.where(np.zeros_like(cost_maps.safe) if telling is None else telling, MOVE_COST, 0.0).ravel()
         self._reached: dict[tuple[int, bool], Bools] = {}  # by the greatest length, and whether to inspect an object
         self._turns: dict[tuple[str, bytes], Square | None] = {}  # by the kind and the squares of the subgoal
 
@@ -43,7 +45,7 @@ class FewestMoves:
         # be neighbours. Returns None for all other subgoals, and when the robot is there.
         here, near = self._cost_maps.here, self._met(subgoal)
         if len(near):
-            there: Square | None = self._square(int(near[self._cost_maps.far(near).argmin()]))
+            there: Square | None = self._square(int(near[(self._cost_maps.far(near) - self._bonus[near]).argmin()]))
         else:
             there = self._turning(subgoal)
         return None if there is None or there == here else PlannedRoute((here, there), math.dist(here, there), 0.0, 0)
@@ -102,6 +104,7 @@ class FewestMoves:
             if len(rows):
                 lengths = np.hypot(rows - y, columns - x) + np.hypot(rows - row, columns - column)
                 lengths = lengths - SEEN_SQUARE_VALUE * cost_maps.information_gain[rows, columns]
+                lengths -= self._bonus.reshape(first.shape)[rows, columns]
                 if lengths.min() < best:
                     best, k = lengths.min(), lengths.argmin()
                     found = (int(columns[k]), int(rows[k]))

@@ -4,11 +4,13 @@ Pushes are of the held object, straight, (dx, dy) in squares along the axes of t
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
 
-from geometry.kernels.arrays import XY, Floats
+from geometry.kernels.arrays import Bools, Floats
+from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import ContactBody
@@ -16,7 +18,7 @@ from geometry.motion.se2 import Translate
 from geometry.raster.components import components
 from geometry.raster.runs import mask_to_polygon
 from kb.world.model import Node
-from planner.goals.placement import floor_leads_away, forbidden_squares, to_view_frame
+from planner.goals.placement import floor_leads_away, forbidden_squares, meets_any_end, to_view_frame
 from planner.screen.moves import CARRYING_PACE
 from planner.screen.projection import SquareIndices, dilate, indices_to_mask
 from planner.situation import Situation
@@ -36,18 +38,43 @@ def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> T
     return Translate(*free[0].tolist()) if len(free) else None
 
 
-def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situation) -> Translate | None:
-    """Return the first of two pushes to an end, so that the robot comes to one of some squares between them."""
+def detour_push(
+    node: Node,
+    looks: Sequence[SquareIndices],
+    ends: Mapping[str, End],
+    pushes: Sequence[Translate],
+    situation: Situation,
+) -> Translate | None:
+    """Return the first of one or two pushes to an end with which the robot halts on the way where it looks from."""
+    # It takes the place of `pushes`, which lead to an end without that. Each look that is left afterwards counts as a
+    # push, and so does the release before those. It is the shortest of the ways that cost least, and no more than
+    # `pushes`. ends : regions where the object may end instead.
     x, y = situation.model.place_on_view
-    pushes = _pushes_to(squares, situation)
-    length = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
-    pushes = pushes[np.argsort(length, kind="stable")]
     shape, workspace = to_view_frame(node.polygon, situation), _workspace(node, situation)
-    for dx, dy in pushes[workspace.far(ContactBody(shape, [(x, y)]), pushes)].tolist():
-        push, onward = Translate(dx, dy), Translate(end[0] - dx, end[1] - dy)
-        if workspace.lets(push.carry(shape), (x + dx, y + dy), onward):
-            return push
-    return None
+    squares = np.unique(np.concatenate(list(looks)))
+    halts = _pushes_to(squares, situation)
+    seen = np.array([[_square_at(situation, x + dx, y + dy) in look for look in looks] for dx, dy in halts])
+    last = [n for n, (dx, dy) in enumerate(halts.tolist()) if meets_any_end(ends, Translate(dx, dy).carry(shape))]
+    end = np.sum([(push.dx, push.dy) for push in pushes], axis=0)
+
+    def cost(number: int, felt: Bools) -> int:
+        """Return what pushes cost with which some of the looks are done, in commands."""
+        left = len(looks) - int(felt.sum())
+        return number + left + (left > 0)
+
+    found: list[tuple[int, float, float, tuple[float, float]]] = []
+    for n in np.flatnonzero(workspace.far(ContactBody(shape, [(x, y)]), halts)).tolist() if len(halts) else ():
+        first = Translate(*halts[n].tolist())
+        length, body = math.hypot(first.dx, first.dy), ContactBody(first.carry(shape), [(x + first.dx, y + first.dy)])
+        if n in last:
+            found.append((cost(1, seen[n]), length, length, (first.dx, first.dy)))
+        onward = np.vstack([end, halts[last]]) - halts[n]
+        for number in np.flatnonzero(workspace.far(body, onward)).tolist():
+            felt = seen[n] | seen[last[number - 1]] if number else seen[n]
+            way = length + float(np.hypot(*onward[number]))
+            found.append((cost(2, felt), way, length, (first.dx, first.dy)))
+    best = min(found, default=None)
+    return Translate(*best[-1]) if best is not None and best[0] <= cost(len(pushes), np.zeros(0, np.bool_)) else None
 
 
 def escape_push(node: Node, situation: Situation) -> Translate | None:
@@ -90,6 +117,11 @@ def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
     spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_PUSHES).astype(int)) if len(able) else able
     chosen: Floats = pushes[able[spread]]
     return chosen
+
+
+def _square_at(situation: Situation, x: float, y: float) -> int:
+    """Return the flat index of the square at a point (x, y) of the view frame."""
+    return math.floor(y) * situation.model.labels.shape[1] + math.floor(x)
 
 
 def _workspace(node: Node, situation: Situation) -> Workspace:

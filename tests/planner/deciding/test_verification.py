@@ -172,7 +172,7 @@ def test_a_door_is_sure_when_verge_was_felt_on_both_of_its_jambs() -> None:
     def is_doubtful(*felt: tuple[int, int]) -> bool:
         """Return whether the robot, in the east, may be in the same room still, with verge felt on some squares."""
         situation = situation_of(replace(model, felt=dict.fromkeys(felt, "b")))
-        return check_elsewhere("in", (-20.0, 0.5), model.squares([(0, 0)]), situation) is not None
+        return bool(check_elsewhere("in", (-20.0, 0.5), model.squares([(0, 0)]), situation))
 
     assert is_doubtful()
     assert all(is_doubtful(jamb) for jamb in jambs)
@@ -197,11 +197,10 @@ def test_the_mouth_of_an_arm_is_no_door_while_squares_beyond_are_unseen(goal: st
     situation = situation_of(walked(ARM, WAY).model)
     model = situation.model
     covered, began = model.squares([(24, -10), (25, -10)]), (0.5, 5.0)
-    look = check_elsewhere(goal, began, covered, situation)
-    assert look is not None
+    (look,) = check_elsewhere(goal, began, covered, situation)
     rows, columns = np.divmod(look.squares, model.labels.shape[1])
     assert (columns + model.view.west > 16).all() and (rows + model.view.south < -4).all()
-    assert check_elsewhere("around", began, covered, situation) is None
+    assert not check_elsewhere("around", began, covered, situation)
     assert 1 in {side for door in situation.rooms.sure for side in door.sides}
 
 

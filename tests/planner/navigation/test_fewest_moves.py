@@ -98,6 +98,18 @@ def test_the_second_move_can_begin_where_the_first_ends(cost_maps: CostMaps) -> 
     assert FewestMoves(cost_maps).way(subgoal((3, 2))) is None
 
 
+def test_of_squares_that_one_move_reaches_one_that_tells_more_is_chosen(cost_maps: CostMaps) -> None:
+    """What must be felt sooner or later is felt where that costs no command."""
+    met = np.flatnonzero(one_move_squares(cost_maps, "explore") & (cost_maps.distances[0] > 10))
+    near, telling = met[np.argsort(cost_maps.far(met), kind="stable")][[0, 9]]
+    mask = np.zeros(cost_maps.safe.shape, np.bool_)
+    mask.ravel()[telling] = True
+    for told, end in ((None, near), (mask, telling)):
+        way = FewestMoves(cost_maps, told).way(Subgoal("explore", np.array([near, telling]), "there"))
+        assert way is not None
+        assert way.squares[1][1] * len(WALLS[0]) + way.squares[1][0] == end
+
+
 @pytest.mark.parametrize("unseen", ["north", "south"])
 def test_the_turn_is_where_unseen_squares_come_into_sight(unseen: str) -> None:
     """A block stands between the robot and its subgoal; the ways on both sides are as long."""

@@ -10,6 +10,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from geometry.manipulation.goals import Inside
 from geometry.manipulation.plan_carrying import Leg
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Motion, Rotate, Translate
@@ -255,7 +256,7 @@ def surely_free(situation: Situation, node: Node) -> Workspace:
 @settings(max_examples=60, deadline=None)
 def test_a_detour_is_two_pushes_that_are_free(x: int, y: int, dx: int, dy: int) -> None:
     situation, node = holding()
-    push = detour_push(node, at(situation, (x, y)), (float(dx), float(dy)), situation)
+    push = detour_push(node, [at(situation, (x, y))], {}, [Translate(float(dx), float(dy))], situation)
     yard, shape = surely_free(situation, node), to_view_frame(node.polygon, situation)
     here = 0.5 - situation.model.view.west, 0.5 - situation.model.view.south
     there = Translate(float(x), float(y))
@@ -268,8 +269,20 @@ def test_a_detour_is_two_pushes_that_are_free(x: int, y: int, dx: int, dy: int) 
 def test_a_detour_leads_by_the_square_that_is_least_out_of_the_way() -> None:
     situation, node = holding()
     squares = at(situation, (0, 5), (5, 4), (2, 5))
-    assert detour_push(node, squares, (9.0, 4.0), situation) == Translate(5.0, 4.0)
-    assert detour_push(node, squares, (-3.0, 4.0), situation) == Translate(0.0, 5.0)
+    assert detour_push(node, [squares], {}, [Translate(9.0, 4.0)], situation) == Translate(5.0, 4.0)
+    assert detour_push(node, [squares], {}, [Translate(-3.0, 4.0)], situation) == Translate(0.0, 5.0)
+
+
+def test_the_last_push_ends_where_something_is_seen_within_the_region_of_the_goal() -> None:
+    """A push that must end in a region need not end where the plan says, and two looks may take two pushes."""
+    situation, node = holding()
+    west, south = situation.model.view.west, situation.model.view.south
+    region = {"r2": Inside(shapely.box(6 - west, 0 - south, 12 - west, 6 - south))}
+    end = [Translate(7.0, 1.0)]
+    halt, other = at(situation, (6, 4)), at(situation, (2, 3))
+    assert detour_push(node, [halt], region, end, situation) == Translate(6.0, 4.0)
+    assert detour_push(node, [halt], {}, end, situation) == Translate(6.0, 4.0)
+    assert detour_push(node, [halt, other], region, end, situation) == Translate(2.0, 3.0)
 
 
 @pytest.mark.parametrize("pull", [True, False])
@@ -290,12 +303,12 @@ def test_a_detour_takes_the_place_of_pushes_but_not_of_turns(
     plan = RemainingPlan(node.name, "northeast", node.polygon, (leg,), node.patch, 0, (0.5, 0.5), grasped=True)
     executor = PlanExecutor(pull, plan=plan)
     assert isinstance(executor.continue_plan(node, situation), Act)
-    act = executor.detour(node, at(situation, (4, 5)), situation)
+    act = executor.detour(node, [at(situation, (4, 5))], {}, situation)
     assert (act is not None) == (taken and pull)
     if act is not None:
         assert act.command == Push(4.0, 5.0)
         assert (
-            executor.detour(node, at(situation, (4, 5)), situation) == act
+            executor.detour(node, [at(situation, (4, 5))], {}, situation) == act
         )  # the plan is kept until the push is given
         executor.depart(act)
         assert executor.continue_plan(node, situation) is None  # another plan is made from there
@@ -305,4 +318,4 @@ def test_there_is_no_detour_with_an_object_that_is_not_held() -> None:
     situation, node = holding()
     leg = Leg((0.5, 0.5), (1, 0), (Translate(9.0, 4.0),))
     executor = PlanExecutor(plan=RemainingPlan(node.name, "northeast", node.polygon, (leg,), node.patch, 0))
-    assert executor.detour(node, at(situation, (4, 5)), situation) is None
+    assert executor.detour(node, [at(situation, (4, 5))], {}, situation) is None
