@@ -105,8 +105,9 @@ class OwnGoals:
             if doubts:
                 continue
             doubts = check_elsewhere(goal.name, began, covered, situation)
-            for doubt in doubts if node is not None else ():
-                pushed = push_to_see(node, doubt, situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE), turn)
+            if node is not None and doubts:
+                there = situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE)
+                pushed = next(filter(None, (push_to_see(node, doubt, there, turn) for doubt in doubts)), None)
                 if pushed is not None:
                     return pushed
         found = turn.seek(doubts, lambda: doubts[0].what) if doubts else nothing_to_do("nothing is left to look at")

@@ -34,7 +34,8 @@ class ObstacleClearer:
 
     def begun(self, situation: Situation) -> tuple[str, ...]:
         """Return what was begun in an earlier decision and is gone on with: feel, make_way, both, or nothing."""
-        feeling = ("feel",) if self._feeling and situation.model.held is None else ()
+        self._feeling &= situation.model.held is None  # what is in hand was led out instead: goals are asked about anew
+        feeling = ("feel",) if self._feeling else ()
         return (*feeling, "make_way") if self._moving else feeling
 
     def clear_on(self, turn: StageTurn) -> Decision:
@@ -89,6 +90,7 @@ class ObstacleClearer:
     def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move away what stands before walls that were never felt; nothing for none."""
         self._let_stay(goals, turn.situation)
+        self._stays -= {node.name for node in turn.situation.model.objects if node.moved}  # it was put there by chance
         hidden = before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn.stage, turn.situation))
         instead = self._move_first_of(hidden, turn)
         return instead or nothing_to_do("nothing that stands before walls can be moved away")

@@ -31,7 +31,7 @@ from planner.sights.walls import (
     walls_in_question,
 )
 from planner.situation import Situation, neck_squares
-from planner.stages import Stage
+from planner.stages import DOOR_GOALS, Stage
 from planner.subgoal_kind import SubgoalKind
 
 MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time
@@ -46,7 +46,9 @@ def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
     parting = bool(stage.carried) or track or bool(forbidden)
     allowed = _floor_this_side(forbidden, situation) if forbidden else None
     wanted = None if stage.carried or track else _wanted(stage, situation)
-    things = any(situation.task.is_object(str(term)) for goal in stage.goals for term in goal.args)
+    about = any(situation.task.is_object(str(term)) for goal in stage.goals for term in goal.args)
+    doorless = not situation.doors and any(goal.name in DOOR_GOALS for goal in stage.goals)  # whatever things there are
+    things = (parting or about) and not doorless
     return FeelingScope(parting, wanted, allowed, things)
 
 

@@ -15,7 +15,7 @@ def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
     """Return the objects that were never seen to move as one thing, and so may be several, in model order."""
     model = cost_maps.model
     several = [node for node in model.objects if not node.whole and node.confidence >= MIN_LIKELY_OBJECT]
-    if scope.parting or scope.things:
+    if scope.things:
         return several
     verge = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     known: Bools = cost_maps.floor | verge | np.any([model.mask(node.patch) for node in model.objects], axis=0)

@@ -121,7 +121,7 @@ def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
 
 def _square_at(situation: Situation, x: float, y: float) -> int:
     """Return the flat index of the square at a point (x, y) of the view frame."""
-    return math.floor(y) * situation.model.labels.shape[1] + math.floor(x)
+    return math.floor(y) * int(situation.model.labels.shape[1]) + math.floor(x)
 
 
 def _workspace(node: Node, situation: Situation) -> Workspace:

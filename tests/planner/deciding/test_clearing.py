@@ -132,6 +132,23 @@ def test_the_way_to_an_obstacle_is_continued_whatever_else_there_is_to_do() -> N
     assert clearing.on(UTAK, situation).result == "idle"
 
 
+@pytest.mark.parametrize("moved", [True, False])
+def test_what_a_goal_speaks_of_is_moved_away_from_unfelt_walls_where_the_robot_put_it(moved: bool) -> None:
+    model = known(["b" * 9, *["b.......b"] * 4, "b....gg.b", "b..U.ggbb", "b" * 9], moved=moved).model
+    hidden = all_felt(model).felt.keys() - {(2, -1), (3, -1)}  # the wall south of the thing
+    situation = situation_of(replace(model, felt=dict.fromkeys(hidden, "b")), {"x": model.objects[0].name})
+    stage = Stage(facts_from_text("in(x, room(next))."))
+    assert (ObstacleClearer().bare(stage.goals, turn_of(stage, situation)).command is not None) == moved
+
+
+def test_goals_are_asked_about_anew_when_what_is_held_was_led_out_before_walls_are_felt() -> None:
+    situation, clearer = known(ELSEWHERE), ObstacleClearer()
+    held = situation_of(replace(situation.model, held=situation.model.objects[0].name))
+    clearer.feel(UTAK.goals, turn_of(UTAK, situation))
+    assert clearer.begun(situation) == ("feel",)
+    assert clearer.begun(held) == clearer.begun(situation) == ()
+
+
 def test_an_obstacle_that_may_be_wall_is_felt_first() -> None:
     situation = known(BEFORE)
     (node,) = situation.model.objects

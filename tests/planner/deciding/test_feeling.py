@@ -10,6 +10,7 @@ from benchmarks.worlds.filled.doorplugs import plugged_world
 from benchmarks.worlds.scenes import write
 from kb.body import Move
 from kb.language.reader import facts_from_text
+from planner.carrying.open_facts import nearest_open_fact
 from planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
 from planner.sights.walls import feeling_places
 from planner.stages import Stage
@@ -38,6 +39,18 @@ def test_walls_are_felt_until_none_is_left() -> None:
     assert isinstance(getattr(feel_walls(turn_of(UTAK, situation_of(model))), "command", None), Move)
     assert feel_walls(turn_of(UTAK, situation_of(all_felt(model)))) is None
     assert choose_halt([], situation_of(model).cost_maps) is None
+
+
+def test_where_no_door_is_it_does_not_matter_how_many_things_there_are() -> None:
+    """No thing makes a door: only walls and what was never seen may."""
+    rows = [*ROOM[:2], *["b..ggg.....b"] * 2, *ROOM[4:]]
+    situation = situation_of(all_felt(known_model(rows)))
+    facts = {
+        goal: nearest_open_fact(situation, (0.0, 0.0), feeling_scope(Stage(facts_from_text(goal)), situation))
+        for goal in ("in(x, room(next)).", "at(x, corner(northeast)).")
+    }
+    assert facts["in(x, room(next))."] == ""
+    assert "is more than one thing" in facts["at(x, corner(northeast))."]
 
 
 def test_a_room_is_felt_with_few_halts() -> None:
