@@ -9,6 +9,7 @@ situation     what a decision depends on: beliefs, cost maps, rooms, what parame
 journal       what a step adds to the record of decisions and places
 advice        what the plan executor advises
 subgoal_kind  the kinds of subgoals
+under_way     what is being planned, in words
 agenda        which activity comes next for a stage, and with which verdict the robot gives up (a room)
 deciding      how each activity is done (a room)
 tasking       the task plan: what is brought where, in which order (a room)

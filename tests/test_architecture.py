@@ -155,7 +155,7 @@ def test_the_laws_look_at_a_house_that_is_there() -> None:
 def run(program: str, *arguments: str) -> str:
     """Return what a program prints in a Python of its own."""
     command = [sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv[1])\n" + program, str(ROOT), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout.strip()
+    return subprocess.run(command, capture_output=True, text=True, timeout=600, check=True).stdout.strip()
 
 
 def test_whatever_is_imported_waits_for_neither_numba_nor_networkx() -> None:

@@ -10,19 +10,21 @@ import os
 import subprocess
 import sys
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import pytest
 
 from simulator.cli.main import main
 from simulator.scenario.scenario import read_any_world
+from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = Path(__file__).with_name("golden_episodes.json")
 JUDGE = Path(os.environ.get("UTAK_JUDGE") or ROOT.parent / "shared" / "judge" / "judge.py")
 EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/goal.lp"))
 REMEMBERED = ["go_northeast", "go_to_square", "go_round_square", "go_next_room_askew", "push_square_next_room"]
-ALIKE = ["go_northeast_askew", "go_to_square_two"]  # run under several hash seeds
+TRIED = [*REMEMBERED, "go_next_room_forbidden", "push_square_and_wish"]  # by default; the others take longer together
 
 
 @pytest.fixture(scope="module")
@@ -58,11 +60,11 @@ def judged(name: str, episode: Path, folder: Path) -> str:
     for part in ("start.lp", "goal.lp", "expect.lp"):
         (folder / part).write_text((example / part).read_text())
     command = [sys.executable, str(JUDGE), str(folder), str(episode)]
-    found = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    found = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     return "" if found.returncode == 0 else found.stdout + found.stderr
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", few(EXAMPLES, TRIED))
 def test_what_is_claimed_is_so_and_the_judge_finds_nothing(name: str, episode, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     """Without the judge (set UTAK_JUDGE to judge.py) only the claim is compared; one test, so that each runs once."""
     last = json.loads(episode(name).read_text().splitlines()[-1])["result"]
@@ -99,16 +101,15 @@ def rounded(value):  # type: ignore[no-untyped-def]
     return {key: rounded(part) for key, part in value.items()} if isinstance(value, dict) else value
 
 
-@pytest.mark.parametrize("name", ALIKE)
-def test_the_same_seed_gives_the_same_bytes(name: str, tmp_path: Path, episode) -> None:  # type: ignore[no-untyped-def]
-    logs = [episode(name).read_bytes()]
-    for seed in ("0", "1", "2"):
-        log = tmp_path / f"{seed}.jsonl"
-        command = [sys.executable, "-m", "simulator.cli", "run", str(ROOT / "examples" / name), "--log", str(log)]
-        environment = {**os.environ, "PYTHONHASHSEED": seed}
-        subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, timeout=300, check=False)
-        logs.append(log.read_bytes())
-    assert len(set(logs)) == 1
+HASH_SEEDS = [("push_square_next_room", "1"), *product(["go_northeast_askew", "go_to_square_two"], ["0", "1", "2"])]
+
+
+@pytest.mark.parametrize(("name", "seed"), few(HASH_SEEDS, 1))
+def test_the_same_seed_gives_the_same_bytes(name: str, seed: str, tmp_path: Path, episode) -> None:  # type: ignore[no-untyped-def]
+    log = tmp_path / "episode.jsonl"
+    command = [sys.executable, "-m", "simulator.cli", "run", str(ROOT / "examples" / name), "--log", str(log)]
+    subprocess.run(command, cwd=ROOT, env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, check=False)
+    assert log.read_bytes() == episode(name).read_bytes()
 
 
 def test_noise_is_the_seed_s(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from kb.reasoning.encodings import all_encodings, encoding_text
 from simulator.cli.main import main
+from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = [  # scenario and noise
@@ -20,7 +21,7 @@ RUNS = [  # scenario and noise
 Line = dict[str, Any]
 
 
-@pytest.fixture(scope="module", params=RUNS, ids=lambda run: f"{run[0]}-{run[1]}")
+@pytest.fixture(scope="module", params=few([(run,) for run in RUNS], 1), ids=lambda run: f"{run[0]}-{run[1]}")
 def steps(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[Line]:
     name, noise = request.param
     log = tmp_path_factory.mktemp("records") / f"{name}.jsonl"

@@ -39,6 +39,7 @@ from planner.navigation.subgoals import PLANNER_ASP
 from planner.screen.moves import orientation_is_uncertain
 from planner.screen.projection import UNSEEN_LEVEL, dilate
 from planner.situation import Situation
+from planner.under_way import UNDER_WAY
 
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
 TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of squares, the surest first
@@ -139,7 +140,8 @@ class ManipulationOracle:
         options += [f"last({request.last_target})"] * (request.last_target in request.ends)
         verdicts: list[str] = []
         refuted: list[tuple[int, CarryingPlan]] = []  # each with the level that it was asked for
-        for _ in range(MAX_ORACLE_ROUNDS):
+        for number in range(1, MAX_ORACLE_ROUNDS + 1):
+            UNDER_WAY.words = f"carrying {request.node.name}, way {number} of at most {MAX_ORACLE_ROUNDS}"
             choice = _choose_option([*options, *verdicts, *["hopeless"] * self._found_nothing])
             if choice is None:
                 break

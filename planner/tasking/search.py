@@ -27,6 +27,7 @@ from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_fa
 from planner.tasking.offers import Offers, with_returns
 from planner.tasking.proposal import TASK_ENCODING, Proposal, propose
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+from planner.under_way import UNDER_WAY
 
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
@@ -86,6 +87,7 @@ class PlanSearch:
             if self._oracle.asked > MAX_QUESTIONS:
                 break
             number += 1
+            UNDER_WAY.words = f"plan of at most {horizon} steps, proposal {number} of at most {MAX_PROPOSALS}"
             proposal = self._propose(horizon)
             if proposal.unmet and best is None and self._offer(proposal.unmet):
                 continue

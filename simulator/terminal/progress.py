@@ -7,6 +7,8 @@ from collections import defaultdict
 from collections.abc import Hashable, Mapping
 from statistics import fmean
 
+from planner.under_way import UNDER_WAY
+
 REPORT_SECONDS = 2.0  # between two reports; a convention
 
 
@@ -67,13 +69,14 @@ class StepProgress:
 
     def begin(self, step: int) -> None:
         """Note that a step begins, whose number is given."""
-        self._step, self._begun = step, time.monotonic()
+        self._step, self._begun, UNDER_WAY.words = step, time.monotonic(), ""
         self._changed.set()
 
     def line(self, elapsed: float) -> str:
         """Return the report after some seconds of the step."""
         most = "" if self._most is None else f" of at most {self._most}"
-        return f"step {self._step}{most}: planning for {duration(elapsed)} ..."
+        doing = UNDER_WAY.words and f", {UNDER_WAY.words}"
+        return f"step {self._step}{most}: planning for {duration(elapsed)}{doing} ..."
 
     def _report(self) -> None:
         """Print reports until the block ends."""

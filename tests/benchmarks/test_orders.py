@@ -138,6 +138,7 @@ def test_false_claims_are_found(verdict: str, done: bool, impossible: bool, tmp_
     assert row.refutation
 
 
+@pytest.mark.long
 def test_a_sequence_whose_end_alone_is_so_is_not_achieved(tmp_path: Path) -> None:
     # Its last step ends where the sequence ends, but the steps before are left out.
     world = several_world("sequence", 2)
@@ -159,6 +160,7 @@ def test_a_run_that_takes_too_long_is_cut_off(tmp_path: Path) -> None:
     assert row.commands >= 1
 
 
+@pytest.mark.long
 def test_a_run_is_also_cut_off_when_the_first_alarm_rings_where_python_drops_exceptions(tmp_path: Path) -> None:
     class SlowToDelete:
         def __del__(self) -> None:

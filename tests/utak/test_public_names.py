@@ -39,6 +39,6 @@ def test_another_package_with_one_of_our_names_is_named(tmp_path: Path) -> None:
     (tmp_path / "kb" / "__init__.py").write_text("")
     program = f"import sys; sys.path[:0] = [{str(tmp_path)!r}, {str(ROOT)!r}]\nimport utak\nutak.Run"
     done = subprocess.run(
-        [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=600, check=False
     )
     assert f"Python finds {tmp_path / 'kb' / '__init__.py'} first" in done.stderr

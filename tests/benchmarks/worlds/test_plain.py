@@ -16,6 +16,7 @@ from simulator.episode.episode import EpisodeLog
 from simulator.run.session import Session
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
+from tests.tables import few
 
 
 @pytest.mark.parametrize("task", sorted(PLAIN_GOALS))
@@ -36,7 +37,7 @@ def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) 
         read_scenario(write(world, tmp_path / f"{task}-{seed}"))
 
 
-@pytest.mark.parametrize("task", [2, 5, 7])
+@pytest.mark.parametrize("task", few([2, 5, 7], [2]))
 def test_an_informed_robot_needs_no_more_commands(task: int, tmp_path: Path) -> None:
     trial = run_trial(task, 1, Conditions(knowing=True, kind="plain"), tmp_path)
     assert trial.achieved

@@ -21,6 +21,7 @@ from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon, s
 from kb.language.vocabulary import ROBOT
 from simulator.scenario.expectation import Snapshot, unmet
 from simulator.scenario.scenario import read_scenario
+from tests.tables import few
 
 ROOT = Path(__file__).resolve().parents[3]
 SEEDS = range(5)
@@ -38,7 +39,7 @@ def world_of(kind: str, seed: int) -> SeveralWorld:
     return several_world(kind, seed)
 
 
-@pytest.mark.parametrize(("kind", "seed"), WORLDS)
+@pytest.mark.parametrize(("kind", "seed"), few(WORLDS, len(SEVERAL_KINDS)))
 def test_a_world_is_a_valid_scenario_and_not_done_at_the_start(kind: str, seed: int, tmp_path: Path) -> None:
     world = world_of(kind, seed)
     scenario = read_scenario(write(world, tmp_path / world.name))
@@ -48,7 +49,7 @@ def test_a_world_is_a_valid_scenario_and_not_done_at_the_start(kind: str, seed: 
     assert len(scenario.task.goals) == sum(len(stage) for stage in world.stages)
 
 
-@pytest.mark.parametrize(("kind", "seed"), WORLDS)
+@pytest.mark.parametrize(("kind", "seed"), few(WORLDS, len(SEVERAL_KINDS)))
 def test_the_things_of_a_task_differ_in_what_is_claimed_of_them(kind: str, seed: int) -> None:
     world = world_of(kind, seed)
     claims = [line.partition(". ")[2].replace(f"({name},", "(_,") for name, line in _claims(world.claims)]
@@ -64,7 +65,7 @@ def _claims(text: str) -> list[tuple[str, str]]:
     return [(line.partition("(")[2][0], line) for line in text.splitlines()]
 
 
-@pytest.mark.parametrize(("kind", "seed"), WORLDS)
+@pytest.mark.parametrize(("kind", "seed"), few(WORLDS, len(SEVERAL_KINDS)))
 def test_things_touch_nothing_and_the_robot_stands_on_free_floor(kind: str, seed: int) -> None:
     world = world_of(kind, seed)
     solid = [world.plan.verge, *(thing.polygon for thing in world.things)]

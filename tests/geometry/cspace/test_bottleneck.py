@@ -21,12 +21,13 @@ from geometry.cspace.plan_motion import plan_motion
 from geometry.manipulation.goals import Inside
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
+from tests.tables import few
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 BRICK = box(0, 0, 6, 4)
 
 
-@pytest.mark.parametrize("reached", [(12.0, 20.0), (12.0, 40.0), (20.0, 48.0)])
+@pytest.mark.parametrize("reached", few([((12.0, 20.0),), ((12.0, 40.0),), ((20.0, 48.0),)], 1))
 def test_a_body_with_room_all_round_was_not_stopped_there(reached: tuple[float, float]) -> None:
     rooms = shapely.union_all([box(2, 2, 25, 52), box(27, 2, 48, 52), box(25, 47, 27, 50)])
     field = ObstacleField(box(-2, -2, 52, 56).difference(rooms), (-2.0, -2.0, 52.0, 56.0))
@@ -43,6 +44,7 @@ sides = st.integers(14, 60)
 share = st.integers(0, 1000).map(lambda number: number / 1000)
 
 
+@pytest.mark.long
 @settings(max_examples=20, deadline=None)
 @example(ELL, (48, 57, 54, 27), (0.2, 0.3, 0.6), 1.8, 1.0, 0)
 @example(BRICK, (46, 55, 57, 36), (0.5, 0.4, 1.0), 2.0, 2.0, 1)

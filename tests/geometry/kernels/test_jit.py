@@ -150,6 +150,7 @@ def shifted(x: int) -> int:
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT", "0") != "0", reason="nothing is compiled")
 def test_damaged_files_in_the_cache_are_made_anew(tmp_path: Path) -> None:
     cache = tmp_path / "cache"
@@ -173,6 +174,7 @@ def test_damaged_files_in_the_cache_are_made_anew(tmp_path: Path) -> None:
         assert called() == "42 0"
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT", "0") != "0", reason="nothing is compiled")
 def test_kernels_of_an_installation_that_cannot_be_written_are_read(tmp_path: Path) -> None:
     installation = tmp_path / "here"

@@ -27,6 +27,7 @@ from geometry.manipulation.query import ManipulationQuery
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
+from tests.tables import few
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 ROOM = box(26, 2, 50, 22)
@@ -338,8 +339,7 @@ def test_the_robot_walks_round_instead_of_turning_where_turns_cost_more() -> Non
         replay(plan, brick, two_rooms(5), utak)
 
 
-@pytest.mark.parametrize("task", [6, 7, 9])
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(("task", "seed"), few([(task, seed) for task in (6, 7, 9) for seed in range(6)], 3))
 def test_costly_turns_are_made_only_where_they_save_more(task: int, seed: int) -> None:
     world = scenario(task, 40 + seed)
     if not world.possible:
@@ -354,8 +354,7 @@ def test_costly_turns_are_made_only_where_they_save_more(task: int, seed: int) -
     )  # walks count by length
 
 
-@pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("task", [5, 6, 7, 8, 9])
+@pytest.mark.parametrize(("task", "seed"), few([(task, seed) for task in range(5, 10) for seed in range(4)], 5))
 def test_random_worlds(task: int, seed: int) -> None:
     world = scenario(task, 8 + seed)
     shape, free, goal = world.things[0].polygon, free_squares(world), goal_of(world)

@@ -58,6 +58,7 @@ def swept(shape: shapely.Geometry, motion: Motion, steps: int = 40) -> list:
     return [motion.part(t).carry(shape) for t in np.linspace(0, 1, steps)]
 
 
+@pytest.mark.long
 @settings(max_examples=250, deadline=None)
 @given(shapes, st.lists(shapes, min_size=1, max_size=3), st.lists(motions, min_size=1, max_size=3))
 def test_a_motion_goes_as_far_as_a_sweep_with_shapely_and_no_further(
@@ -109,6 +110,7 @@ FLOOR, WALL = box(-20, -2, 20, 0), box(10, 0, 12, 2)
 ROOM = Obstacles([FLOOR, WALL])
 
 
+@pytest.mark.long
 @settings(max_examples=200, deadline=None)
 @given(st.tuples(either, either), st.lists(shapes, min_size=1, max_size=3), st.lists(motions, min_size=1, max_size=3))
 def test_a_point_moves_the_same_whether_or_not_the_union_is_known(point: tuple, still: list, several: list) -> None:

@@ -19,13 +19,14 @@ from kb.world.stated_plan import SETTLING_WORDS
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
 from simulator.explaining.questions import Questions, questions_of_episode
+from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 RUNS = [("go_next_room_askew", "0"), ("push_l_tight_door", "0"), ("push_square_next_room", "0.05")]
 STRIDE = 7  # every seventh fact of a step is explained here; benchmarks.episodes.explanations explains all
 
 
-@pytest.fixture(scope="module", params=RUNS, ids=lambda run: f"{run[0]}-{run[1]}")
+@pytest.fixture(scope="module", params=few([(run,) for run in RUNS], 1), ids=lambda run: f"{run[0]}-{run[1]}")
 def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Questions, list[Any]]:
     name, noise = request.param
     log = tmp_path_factory.mktemp("reasons") / f"{name}.jsonl"

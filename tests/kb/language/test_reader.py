@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from kb.language.diagnostics import BadInputError, CannotOpenError
 from kb.language.reader import facts_from_text, read_facts
 from kb.language.terms import Number, Symbol, Text
+from tests.tables import few
 
 GIVEN_UP = (
     60.0  # seconds of processor time: many times what linear reading takes, far less than quadratic reading would take
@@ -124,7 +125,9 @@ def test_at_most_twenty_problems_are_shown() -> None:
     assert str(caught.value).endswith("... and more")
 
 
-@pytest.mark.parametrize("text", ["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"])
+@pytest.mark.parametrize(
+    "text", few(["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"], ["p(x,"])
+)
 def test_the_time_to_read_grows_linearly(text: str) -> None:
     start = time.process_time()
     with pytest.raises(BadInputError) as caught:

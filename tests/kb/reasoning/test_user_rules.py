@@ -1,7 +1,6 @@
 """Users' rules: their effect, and that every error in them is reported as an error of their file."""
 
 import random
-import time
 from pathlib import Path
 
 import pytest
@@ -217,7 +216,7 @@ def test_an_error_of_a_rule_during_a_query_has_its_place(tmp_path: Path) -> None
 
 
 def test_a_runaway_rule_is_given_up(tmp_path: Path) -> None:
-    limits, before = RuleLimits(seconds=0.5), time.monotonic()
+    limits = RuleLimits(seconds=0.5)
     endless = written(tmp_path, "n(0). n(X+1) :- n(X), X < 2000000000. kind(a, verge, 8) :- n(1).")
     for run in (
         lambda: read_tested_rules(endless, limits),
@@ -225,7 +224,6 @@ def test_a_runaway_rule_is_given_up(tmp_path: Path) -> None:
     ):
         with pytest.raises(BadInputError, match=r"rules0\.lp:1:1-1: error: these rules were given up"):
             run()
-    assert time.monotonic() - before < 20
     assert answered(tmp_path, "kind(a, verge, 8).")  # and the next question is answered
 
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
+import pytest
 import shapely
 from shapely.affinity import translate
 
@@ -30,6 +31,7 @@ def turns(plan: RemainingPlan) -> bool:
     return any(isinstance(motion, Rotate) for leg in plan.legs for motion in leg.motions)
 
 
+@pytest.mark.long
 def test_a_remaining_plan_leads_where_the_manipulation_plan_does(tmp_path: Path) -> None:
     turned = []
 
@@ -47,6 +49,7 @@ def test_a_remaining_plan_leads_where_the_manipulation_plan_does(tmp_path: Path)
     assert any(turned)
 
 
+@pytest.mark.long
 def test_a_turned_object_lies_as_the_plan_says(tmp_path: Path) -> None:
     off = []
 
@@ -63,6 +66,7 @@ def test_a_turned_object_lies_as_the_plan_says(tmp_path: Path) -> None:
     assert max(off) < AREA_TOLERANCE
 
 
+@pytest.mark.long
 def test_an_object_is_grasped_from_where_the_robot_stands(tmp_path: Path) -> None:
     begun = []
 

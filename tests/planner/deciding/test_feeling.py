@@ -19,6 +19,7 @@ from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 from tests.kb.drawings import known_model
 from tests.planner.situations import all_felt, situation_of, turn_of
+from tests.tables import few
 
 UTAK = Stage(facts_from_text("in(utak, room(next))."))
 CASES = Path("/work/shared/cases")
@@ -75,13 +76,16 @@ def test_a_room_is_felt_with_few_halts() -> None:
 
 @pytest.mark.parametrize(
     ("kind", "task", "seed", "pull"),
-    [
-        ("flush", "next", 0, True),
-        ("recessed", "next", 1, False),
-        ("out", "next", 0, False),
-        ("two", "next", 0, True),
-        ("flush", "carry_next", 0, True),
-    ],
+    few(
+        [
+            ("flush", "next", 0, True),
+            ("recessed", "next", 1, False),
+            ("out", "next", 0, False),
+            ("two", "next", 0, True),
+            ("flush", "carry_next", 0, True),
+        ],
+        1,
+    ),
 )
 def test_what_fills_a_doorway_is_felt_and_cleared(kind: str, task: str, seed: int, pull: bool, tmp_path: Path) -> None:
     result = ended(write(plugged_world(kind, task, seed), tmp_path / "scenario"), pull)

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FREE, OPEN
@@ -29,8 +29,9 @@ from planner.screen.sweeps import line_sweep_is_free, swept_offsets
 from planner.sights import frontiers
 from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import random_room
+from tests.tables import few
 
-WALKS = st.integers(0, 19)  # seeds of random walks: so few, since each takes a while and serves several tests
+WALKS = few(range(20), 4)  # seeds of random walks, each of which serves several tests
 
 
 @cache
@@ -50,8 +51,7 @@ def random_walk(seed: int) -> WorldModel:
     return walked(rows, way).model
 
 
-@settings(max_examples=12, deadline=None)
-@given(WALKS)
+@pytest.mark.parametrize("seed", WALKS)
 def test_the_projection_is_monotone(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
     for level in range(UNSEEN_LEVEL):
@@ -63,8 +63,7 @@ def test_the_projection_is_monotone(seed: int) -> None:
     assert cost_maps.floor[cost_maps.here[1], cost_maps.here[0]]
 
 
-@settings(max_examples=8, deadline=None)
-@given(WALKS)
+@pytest.mark.parametrize("seed", WALKS)
 def test_safe_squares_are_settled_or_far_from_doubt(seed: int) -> None:
     model = random_walk(seed)
     safe, view = CostMaps(model).safe, model.view
@@ -119,8 +118,7 @@ def test_a_move_sweeps_only_safe_squares(kind: str, pace: Pace) -> None:
             assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
 
 
-@settings(max_examples=8, deadline=None)
-@given(WALKS)
+@pytest.mark.parametrize("seed", WALKS)
 def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
     model = random_walk(seed)
     cost_maps = CostMaps(model)
@@ -274,8 +272,7 @@ def test_the_pivot_lies_within_the_object() -> None:
     assert (int(np.floor(x)), int(np.floor(y))) in node.patch.squares()
 
 
-@settings(max_examples=8, deadline=None)
-@given(WALKS)
+@pytest.mark.parametrize("seed", WALKS)
 def test_odd_boundaries_are_part_of_the_unsettled_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
 
@@ -349,8 +346,7 @@ def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_b
     assert any(near) == pace.bold
 
 
-@settings(max_examples=20, deadline=None)
-@given(WALKS)
+@pytest.mark.parametrize("seed", WALKS)
 def test_bold_moves_go_up_to_unsettled_squares_but_not_to_unseen_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
     view = cost_maps.model.view

@@ -15,6 +15,7 @@ from kb.world.model import Node
 from planner.skills.measure_size import MAX_SIZE_PUSHES, SizeEstimator
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("task", "seed", "kind"),
     [

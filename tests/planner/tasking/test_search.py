@@ -1,5 +1,6 @@
 """Task plans: order, places and what is moved aside, in small worlds that are wholly known."""
 
+import re
 from collections.abc import Mapping
 from itertools import pairwise
 
@@ -16,6 +17,7 @@ from planner.oracles.problem import PlacedGoal, TaskProblem
 from planner.situation import Situation
 from planner.tasking.search import MadePlan, make_plan
 from planner.tasking.task_plan import RefutedStep, TaskPlan
+from planner.under_way import UNDER_WAY
 from tests.planner.situations import known_situation
 
 WALL = "b" * 24
@@ -134,6 +136,10 @@ def test_an_obstacle_is_moved_aside_first() -> None:
     actions = [(errand.action, errand.subject) for errand in made.plan.errands]
     assert actions == [("clear", "h"), ("carry", "g")]
     assert made.plan.verified
+    said = re.fullmatch(r"plan of at most (\d) steps, proposal (\d+) of at most 80", UNDER_WAY.words)
+    assert said is not None and (int(said[1]), int(said[2])) == (2, made.plan.rounds), (
+        "it is said how far the search is"
+    )
 
 
 def test_two_things_change_places_by_way_of_a_third_place() -> None:

@@ -18,7 +18,7 @@ from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 pty = pytest.importorskip("pty")  # not on Windows
 ROOT = Path(__file__).resolve().parents[3]
 ESCAPES = re.compile(rb"\x1b\[[0-9;?]*[ -/]*[@-~]|\x1b[()=>].?|\x1b\][^\x07]*\x07")
-MAX_WAIT_SECONDS = 60  # for one answer, on a busy machine
+MAX_WAIT_SECONDS = 600  # for one answer, on a busy machine
 
 
 def take_terminal() -> None:

@@ -148,7 +148,7 @@ def test_moving_pictures_without_pillow_say_what_is_missing(carried: tuple[Path,
     )
     path = tmp_path / "run.gif"
     command = [sys.executable, "-c", program, str(ROOT), "replay", str(carried[0]), "--gif", str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert (done.returncode, done.stdout) == (66, "")
     assert "pip install pillow" in done.stderr
     assert not path.exists()

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from planner.under_way import UNDER_WAY
 from simulator.terminal.progress import Progress, StepProgress, duration
 
 
@@ -53,7 +54,10 @@ def test_a_long_step_is_reported_on_a_terminal_alone(
                 break
     assert said == "step 7 of at most 200: planning for 0 s ...\n" * said.count("\n")
     assert bool(said) == is_terminal
-    assert StepProgress().line(4.0) == "step 0: planning for 4 s ..."
+    UNDER_WAY.words = "proposal 3 of at most 80"
+    assert progress.line(4.0) == "step 7 of at most 200: planning for 4 s, proposal 3 of at most 80 ..."
+    progress.begin(8)
+    assert progress.line(4.0) == "step 8 of at most 200: planning for 4 s ...", "what was planned before is over"
 
 
 def test_durations_are_short_texts() -> None:

@@ -54,12 +54,11 @@ def test_ctrl_c_ends_all_jobs_at_once(tmp_path: Path) -> None:
     process = subprocess.Popen(
         command, cwd=EXERCISES.parents[1], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    deadline = time.monotonic() + 60
-    while len(children(process.pid)) < 2 and time.monotonic() < deadline:
+    while len(children(process.pid)) < 2 and process.poll() is None:
         time.sleep(0.05)
     workers = children(process.pid)
     process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate()
     assert process.returncode == 130
     assert "Traceback" not in err
     assert len(workers) == 2

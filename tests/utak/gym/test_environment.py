@@ -6,11 +6,14 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+
+from tests.tables import few
 
 gymnasium = pytest.importorskip("gymnasium")
 env_checker = pytest.importorskip("gymnasium.utils.env_checker")
@@ -35,8 +38,7 @@ def make(scenario: Any = ROOM, **options: Any) -> Any:
     return gymnasium.make("utak/Tabletop-v0", scenario=scenario, **options)
 
 
-@pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("render_mode", [None, "ansi", "rgb_array"])
+@pytest.mark.parametrize(("form", "render_mode"), few(product(FORMS, [None, "ansi", "rgb_array"]), 2))
 def test_the_checker_of_gymnasium_finds_nothing(form: str, render_mode: str | None) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -265,7 +267,7 @@ def test_gymnasium_finds_the_environment_by_the_name_of_its_package() -> None:
         "env.reset(seed=1); print(env.unwrapped.table.utak)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=120, check=True
+        [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=600, check=True
     )
     assert done.stdout.strip() == "(9.5, 15.5)"
 

@@ -27,6 +27,7 @@ from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from tests.kb.eyes import impression, random_room, world_of
+from tests.tables import few
 
 LOOKS = [(20, 20), (21, 22), (25, 24)]
 LONG_ROOM = ["b" * 80, *["b" * 2 + "." * 76 + "b" * 2] * 20, "b" * 80]
@@ -50,6 +51,7 @@ def likeliest(hypotheses: tuple[FrameHypothesis, ...]) -> int:
     return min(hypotheses, key=lambda h: h.prior_cost).angle
 
 
+@pytest.mark.long
 def test_the_first_observation_mostly_tells_the_orientation() -> None:
     rng, off = np.random.default_rng(4), []
     for _ in range(24):
@@ -94,7 +96,7 @@ def observations_in_a_long_room(heading: int, origin: Point, seed: int) -> list[
     return observations
 
 
-@pytest.mark.parametrize("heading", [-2, -1, 0, 1, 2])
+@pytest.mark.parametrize("heading", few([-2, -1, 0, 1, 2], [1]))
 def test_later_observations_correct_an_orientation_by_one_degree(heading: int) -> None:
     for seed in range(3):
         observations = observations_in_a_long_room(heading, CENTRE, seed)

