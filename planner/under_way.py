@@ -1,8 +1,8 @@
-"""What is being planned, in words, for whoever waits; nothing that decides reads it."""
+"""The plan that is being looked for, in words, to be shown while it takes long. No decision reads it."""
 
 
 class UnderWay:
-    """The plan that is being looked for, and how far that is."""
+    """The plan that is being looked for, and how far the search is."""
 
     words = ""
 

@@ -6,6 +6,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,9 +16,7 @@ from tests.tables import few
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted(ROOT.glob("*.md")) + sorted((ROOT / "docs").rglob("*.md"))
 WRITTEN = [page for page in PAGES if page.parent.name != "reference" and page.name != "CHANGELOG.md"]
-QUICK = [
-    ROOT / "docs" / "guides" / f"{name}.md" for name in ("goal_word", "mind", "oracle", "path_finder", "shape_class")
-]
+QUICK = [ROOT / "docs" / "replay.md", *(ROOT / "docs" / "guides").glob("*.md")]  # pages that take few seconds
 PACKAGES = "geometry|kb|planner|simulator|utak|benchmarks"
 
 
@@ -74,9 +73,13 @@ def fences(page: Path, kind: str) -> list[str]:
     return re.findall(rf"^```{kind}\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize(
-    "page", few([page for page in WRITTEN if fences(page, "console")], [ROOT / "docs" / "replay.md"]), ids=named
-)
+def pages(kind: str) -> list[Any]:
+    """Return the pages with blocks of a kind, of which the quick ones are tried by default."""
+    shown = [page for page in WRITTEN if fences(page, kind)]
+    return few(shown, set(QUICK) & set(shown))
+
+
+@pytest.mark.parametrize("page", pages("console"), ids=named)
 def test_commands_of_a_page_do_what_it_shows(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -98,7 +101,7 @@ def test_commands_of_a_page_do_what_it_shows(
             assert not printed or re.fullmatch(shown, seen, re.DOTALL), f"{command}\n{seen}"
 
 
-@pytest.mark.parametrize("page", few([page for page in WRITTEN if fences(page, "python")], QUICK), ids=named)
+@pytest.mark.parametrize("page", pages("python"), ids=named)
 def test_programs_of_a_page_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The `python` blocks of a page are one program; their asserts hold."""
     (tmp_path / "examples").symlink_to(ROOT / "examples", target_is_directory=True)

@@ -112,6 +112,7 @@ def test_the_same_seed_gives_the_same_bytes(name: str, seed: str, tmp_path: Path
     assert log.read_bytes() == episode(name).read_bytes()
 
 
+@pytest.mark.long
 def test_noise_is_the_seed_s(tmp_path: Path) -> None:
     logs = []
     for number, seed in enumerate(("3", "3", "4")):

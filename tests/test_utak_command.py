@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import utak_command
+from tests.tables import few
 from utak_command import isolated_command
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,7 +73,7 @@ def cold_cache(place: Path) -> dict[str, str]:
     return {"NUMBA_CACHE_DIR": str(place / "cache")}
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", few(COMMANDS, 1))
 def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path) -> None:
     arguments = UTAK + COMMANDS[command] if command != "warming" else isolated_command("simulator.run.warming")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}

@@ -17,7 +17,6 @@ from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import situation_of
-from tests.tables import few
 
 DOOR = Door("d1", (5.0, 2.0), (5.0, 5.0), (1, 2), 99)
 WALL = "b" + "." * 11 + "bb" + "." * 11 + "b"
@@ -107,7 +106,8 @@ def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
     return f'table(25, 45).\n{verge}\nutak("POINT ({utak[0]} {utak[1]})", 270).\n'
 
 
-@pytest.mark.parametrize(("door", "mirrored"), few(product([(5, 10), (8, 11), (16, 20)], [False, True]), 1))
+@pytest.mark.long
+@pytest.mark.parametrize(("door", "mirrored"), product([(5, 10), (8, 11), (16, 20)], [False, True]))
 def test_the_robot_never_goes_through_the_only_door(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
     goals = "in(utak, room(next)). not_through(utak, d)."
     found = run(scene(tmp_path, two_rooms(door, mirrored), "door(d).", goals))

@@ -77,6 +77,7 @@ def test_a_region_that_leaves_no_way_is_named(
     assert result.verdict in verdicts and named in result.reason and "avoid(utak," in result.reason
 
 
+@pytest.mark.long
 def test_a_verdict_that_stands_without_the_constraint_does_not_name_it(tmp_path: Path) -> None:
     small = 'table(12, 12).\nverge("POLYGON ((0 0, 12 0, 12 12, 0 12, 0 0), (2 2, 2 10, 10 10, 10 2, 2 2))").\n'
     goal = f'in(utak, room(next)). avoid(utak, "{box(40, 40, 42, 42)}").'
@@ -84,6 +85,7 @@ def test_a_verdict_that_stands_without_the_constraint_does_not_name_it(tmp_path:
     assert result.verdict in ("impossible", "possible_if") and "avoid" not in result.reason
 
 
+@pytest.mark.long
 def test_nothing_is_carried_through_a_door(tmp_path: Path) -> None:
     goal = "in(x, room(next)). carry_nothing_through(d)."
     found = run(scene(tmp_path, TWO_ROOMS + SQUARE, "object(x). shape(x, square). door(d).", goal))
