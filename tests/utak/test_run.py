@@ -97,6 +97,7 @@ def test_a_fork_may_have_another_goal() -> None:
         run.fork(expect="within(3).")
 
 
+@pytest.mark.long
 def test_a_fork_of_a_fork_is_made_anew_after_an_interrupted_step(monkeypatch: pytest.MonkeyPatch) -> None:
     run = utak.Run(PUSH, seed=3, noise=0.05)
     run.step()
@@ -121,6 +122,7 @@ def test_a_fork_of_a_fork_is_made_anew_after_an_interrupted_step(monkeypatch: py
     assert [stage["until"] for stage in second.episode.record.header["forked"]] == [1, 2]
 
 
+@pytest.mark.long
 def test_the_episode_of_a_fork_can_be_forked_by_the_command(tmp_path: Path) -> None:
     run = utak.Run(NEXT_ROOM, seed=3, noise=0.02)
     run.step()
@@ -146,6 +148,7 @@ def test_options_out_of_range_are_errors(options: dict, message: str) -> None:
         utak.Run(NEXT_ROOM, **options)
 
 
+@pytest.mark.long
 def test_rules_of_users_take_part_and_may_be_asked(tmp_path: Path) -> None:
     rules = tmp_path / "rules.lp"
     rules.write_text("wide(D) :- width(D, L), L >= 300.\n")

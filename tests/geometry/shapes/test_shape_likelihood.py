@@ -13,6 +13,7 @@ from geometry.raster.rasterize import squares
 from geometry.shapes import misfit
 from geometry.shapes.candidates import best_turned_shape
 from geometry.shapes.shape_likelihood import SIZE_RANGE, parameter_volume
+from tests.tables import few
 
 PAD = 2
 Draw = Callable[[np.random.Generator], shapely.Polygon]
@@ -43,7 +44,7 @@ def image_of(shape: shapely.Polygon) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("kind", "draw"),
-    [(misfit.SQUARE_CLASS, square), (misfit.BRICK_CLASS, brick), (misfit.DISC_CLASS, disc)],
+    few([(misfit.SQUARE_CLASS, square), (misfit.BRICK_CLASS, brick), (misfit.DISC_CLASS, disc)], 1),
     ids=["square", "brick", "disc"],
 )
 def test_the_likelihood_of_an_image_is_its_frequency(kind: int, draw: Draw) -> None:

@@ -56,6 +56,7 @@ def answered(engine: QueryEngine, facts: set[str], atom: str) -> str:
     return engine.ask([f"{fact}." for fact in sorted(facts)], atom).kind
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sets(st.sampled_from(POOL)), st.sampled_from(WANTED))
 def test_a_change_makes_the_query_hold_and_no_smaller_part_of_it_does(

@@ -190,6 +190,7 @@ def test_a_new_beginning_keeps_the_track() -> None:
     assert column + 24 < model.labels.shape[1]
 
 
+@pytest.mark.long
 def test_one_observation_tells_the_orientation_whatever_was_believed() -> None:
     off = []
     for seed in range(20):

@@ -54,6 +54,7 @@ def passes(polygon: shapely.Geometry, motion: Translate, walls: shapely.Geometry
     return bool(swept.intersection(walls).area < 1e-4)
 
 
+@pytest.mark.long
 @given(st.floats(-0.9, 0.9).filter(lambda x: abs(x) > 0.01), st.sampled_from([3.0, 4.0, 5.0, 5.5]))
 @settings(max_examples=30, deadline=None)
 def test_an_object_is_drawn_back_and_so_far_aside_that_it_passes(aside: float, wide: float) -> None:

@@ -271,6 +271,7 @@ def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out.split() == ["utak", *stated]
 
 
+@pytest.mark.long
 def test_a_scenario_is_explained_as_its_episode_is_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder, episode = ROOT / "examples" / "go_next_room", tmp_path / "ep.jsonl"
     assert main(["run", str(folder), "--seed", "3", "--noise", "0.02", "--log", str(episode)]) == 0

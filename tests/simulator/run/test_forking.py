@@ -73,6 +73,7 @@ def test_a_fork_goes_on_with_another_goal_and_releases_what_is_held(recorded: Pa
     assert forked.result["verdict"] == "done"
 
 
+@pytest.mark.long
 def test_a_fork_is_resumed_and_forked_again_without_the_first_episode(recorded: Path, tmp_path: Path) -> None:
     assert fork(recorded, 2, "--noise", "0.05", "--seed", "4", "--max-steps", "8") in (0, 1, 75)
     whole = (recorded / "fork.jsonl").read_bytes()

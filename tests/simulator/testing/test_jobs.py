@@ -17,6 +17,7 @@ from simulator.testing.handle import WorkerEndedError, WorkerHandle
 EXERCISES = Path(__file__).resolve().parents[3] / "docs" / "exercises"
 
 
+@pytest.mark.long
 def test_several_jobs_give_the_outcomes_of_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("01_change_the_goal", "02_say_what_you_mean"):
         shutil.copytree(EXERCISES / name, tmp_path / "class" / name)

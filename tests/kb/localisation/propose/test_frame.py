@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -57,6 +58,7 @@ def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surpr
     return surprised(Push(*way), after, observations, held, in_hand=True), there, translate(lies, *went)
 
 
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(COARSE_ORIGINS))
 def test_a_contact_of_utak_in_a_push_is_found_with_the_origin(seed: int, beside: Point) -> None:

@@ -207,6 +207,7 @@ def test_text_replay_tells_a_plan_once_and_then_its_present_step(run: Path) -> N
     assert "\n> 0 carry(o1,g1_r2): " in texts[STEPS]
 
 
+@pytest.mark.long
 def test_the_prompt_tells_the_plan_that_the_command_tells(
     run: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

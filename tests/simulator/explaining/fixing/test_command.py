@@ -50,6 +50,7 @@ def closed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "ep.jsonl"
 
 
+@pytest.mark.long
 def test_a_new_door_is_found_and_written(closed: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     new = tmp_path / "new"
     assert main(["explain", str(closed), "--fix", "--json", "--write", str(new)]) == 0
@@ -135,6 +136,7 @@ def test_a_command_that_leads_moves_as_it_should(heading: int) -> None:
     assert table.utak == pytest.approx((x + 1.5, y - 0.5))
 
 
+@pytest.mark.long
 def test_the_robot_is_led_to_a_place_and_then_acts_by_itself(closed: Path) -> None:
     run = recorded_run("ep", read_episode(closed))
     place = (6.5, 6.5)
