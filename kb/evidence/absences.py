@@ -12,7 +12,7 @@ from kb.explanation.values import Absence
 from kb.explanation.whynot import explain_absence
 from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from kb.language.vocabulary import BELIEF_PREDICATES, ROBOT, Signature
 from kb.tracing.decisions import SolverCall
 
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
@@ -74,7 +74,8 @@ class AbsenceExplainer:
             confidence = _number_or(arguments[2], SURE_SHAPE.get(arguments[1], SURE_CLASS))
             atom = f"shape({arguments[0]},{arguments[1]},{confidence})"
             call, number = self._newest("shapes", step, f"fit({arguments[0]},")
-            yield call, atom, number
+            if call.facts:
+                yield call, atom, number
         elif name == "bound" and len(arguments) == 2:
             yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
         elif name in ("door", "connects", "width") and f"door({arguments[0]})" not in now.fact_set:
@@ -86,7 +87,8 @@ class AbsenceExplainer:
         elif name == "corner" and len(arguments) == 3:
             yield from self._corner(arguments, step)
         elif name == "plan" and len(arguments) == 2:
-            yield from planned_choice(self._facts.record, arguments[0], arguments[1], step)
+            chosen = planned_choice(self._facts.record, arguments[0], arguments[1], step)
+            yield from ((call, atom, made) for call, atom, made in chosen if _is_offered(arguments[1], call))
 
     def _calls(self, encoding: str, atom: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answers of an encoding at a step, the newest first."""
@@ -153,12 +155,19 @@ class AbsenceExplainer:
         thing = (arguments or ("",))[0]
         if name in TASK_PLAN_NAMES:
             planned = any(atom_parts(one)[0] in TASK_PLAN_NAMES for one in self._facts.record.steps[step].facts)
-            because = "the task plan does not state it" if planned else "there is no task plan at this step"
+            unheard = (
+                "no such step was offered when the plan was made"
+                if name == "plan"
+                else "the task plan does not state it"
+            )
+            because = unheard if planned else "there is no task plan at this step"
             because += "; it states this" if instead else ""
         elif name == "held" and (last := self._last_held(fact, step)) is not None:
             because = f"it was in hand up to step {last} and is no longer" + ("; this is, instead" if instead else "")
         elif name == "held" and instead:
             because = "it was never in hand up to this step; this is in hand instead"
+        elif name == "shape" and not instead and f"node({thing})" in self._facts.record.steps[step].fact_set:
+            because = f"no class of shapes was fitted to what is known of {thing}"
         elif name == "movable" and instead:
             because = "it would have to be moved, or seen not to move, for that; this is believed instead"
         elif name in ("door", "connects", "width") and not instead:
@@ -185,6 +194,13 @@ class AbsenceExplainer:
             reason = self._facts.reason(other, step)
             if reason is not None:
                 yield reason
+
+
+def _is_offered(planned: str, call: SolverCall) -> bool:
+    """Return whether the place of a step of the plan was offered; True for steps that bring nothing to a place."""
+    action, arguments = atom_parts(planned)
+    subject = arguments[0] if len(arguments) > 1 else ROBOT
+    return action not in ("carry", "clear", "arrive") or f"place({subject},{arguments[-1]})" in call.facts
 
 
 def _number_or(text: str, default: int) -> int:

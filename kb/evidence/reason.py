@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import Any
 
 MAX_LEVELS = 150  # levels of a tree that are written at most; a convention, well below Python's limit on recursion
+SHOWN_RIVALS = 3  # other choices that the depth `mid` lists for one choice; a convention
 MID_LEVELS = 3  # levels of a tree that the depth `mid` shows: the claim, what it rests on, and what that rests on
 
 
@@ -112,7 +113,12 @@ def _lines(reason: Reason, levels: int, indent: str, written: set[tuple[str, str
     yield f"{indent}{reason.claim}{because}{source}"
     written.add(key)
     if levels > 1:
+        rivals = [one for one in reason.rests_on if "costs" in one.data]  # those that come nearest first
+        far = rivals[SHOWN_RIVALS:] if levels <= MID_LEVELS else []
         for below in reason.rests_on:
-            yield from _lines(below, levels - 1, f"{indent}  ", written)
+            if not any(below is one for one in far):
+                yield from _lines(below, levels - 1, f"{indent}  ", written)
+        if far:
+            yield f"{indent}  not chosen: {len(far)} more, which come less near (depth long lists them)"
     elif reason.rests_on and levels == 1 and indent:
         yield f"{indent}  ..."

@@ -63,9 +63,9 @@ def felt_reason(record: Record, step: int, squares: Iterable[Square], colour: st
             if felt != colour:
                 continue
             named = {(x + column, y + row) for column, row in _beside(now, offset)}
-            if named & wanted:
+            if named & (wanted | set(node_squares(record.steps[number], what))):  # it may have been moved since
                 return _touch_reason(what, colour, direction, number)
-            anywhere = anywhere or _touch_reason(what, colour, direction, number)
+            anywhere = anywhere or _touch_reason(what, colour, direction, number, ", as it was believed to lie then")
     return anywhere
 
 
@@ -75,10 +75,10 @@ def _beside(now: RecordedStep, offset: tuple[int, int]) -> Iterable[Square]:
     return {(math.floor(column + dx + 0.5), math.floor(row + dy + 0.5)) for dx in (-0.01, 0.01) for dy in (-0.01, 0.01)}
 
 
-def _touch_reason(what: str, colour: str, direction: str, number: int) -> Reason:
+def _touch_reason(what: str, colour: str, direction: str, number: int, how: str = "") -> Reason:
     """Return the reason of one touch."""
     data = {"impression": number, "direction": direction, "colour": colour}
-    because = f"colour {colour} was felt in the {direction}"
+    because = f"colour {colour} was felt in the {direction}{how}"
     return Reason(f"{what} has colour {colour}", because, ReasonKind.TOUCH, f"impression {number}", (), data)
 
 

@@ -19,7 +19,7 @@ from planner.screen.projection import shift_mask
 from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.situation import Situation
 
-WHAT_IS_FELT = "whether something stands against the wall was not felt"
+WHAT_IS_FELT = "it was not felt whether something stands against the wall"
 
 
 @dataclass(frozen=True, eq=False)

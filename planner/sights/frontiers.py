@@ -85,7 +85,7 @@ def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
 def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     """Return the floor from which the robot feels whether something is part of a wall, and where not yet."""
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
-    return Viewpoint(beside, "whether something stands against the wall was not felt")
+    return Viewpoint(beside, "it was not felt whether something stands against the wall")
 
 
 def elsewhere_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:

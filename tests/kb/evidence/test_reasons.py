@@ -273,3 +273,12 @@ def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questio
                 assert why.because == f"step {arguments[0]} of the plan is for goal {arguments[1]}"
             elif name == "room" and f"connects(d1,{arguments[0]}," in " ".join(facts):
                 assert below[0] == "door(d1)"
+
+
+def test_the_middle_depth_lists_the_nearest_rivals_alone() -> None:
+    rivals = [Reason(f"not chosen: a{n}", "", ReasonKind.REJECTED, data={"costs": []}) for n in range(5)]
+    reason = Reason("chosen", "", ReasonKind.RULE, rests_on=(*rivals, Reason("missing: b", "", ReasonKind.REJECTED)))
+    told = reason.text().splitlines()
+    assert told[1:4] == [f"  not chosen: a{n}" for n in range(3)]
+    assert told[4:] == ["  missing: b", "  not chosen: 2 more, which come less near (depth long lists them)"]
+    assert len(reason.text(Depth.LONG).splitlines()) == 7
