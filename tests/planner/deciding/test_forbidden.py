@@ -107,7 +107,7 @@ def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("door", "mirrored"), product([(5, 10), (8, 11), (16, 20)], [False, True]))
+@pytest.mark.parametrize(("door", "mirrored"), list(product([(5, 10), (8, 11), (16, 20)], [False, True])))
 def test_the_robot_never_goes_through_the_only_door(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
     goals = "in(utak, room(next)). not_through(utak, d)."
     found = run(scene(tmp_path, two_rooms(door, mirrored), "door(d).", goals))
