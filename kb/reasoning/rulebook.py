@@ -4,7 +4,7 @@ A rule reaches an encoding when all its predicates are known there: documented p
 predicates of the user's own that rules define there. `belief` stands for the facts that queries read.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,10 +41,6 @@ INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("contradicted", 1): ("accommodation",), ("cramped", 1): ("accommodation",),
     ("clear", 0): ("accommodation",), ("uneven", 0): ("accommodation",), ("unchanged", 0): ("accommodation",),
 }  # fmt: skip
-# By a predicate that rules only read: what they may state in its place.
-STATE_INSTEAD: Mapping[Signature, str] = {
-    ("has", 4): "state shape(N, S, C), which counts wherever the shape of N does",
-}
 # The predicates that rules may use, by encoding.
 PREDICATES_BY_ENCODING: Mapping[str, frozenset[Signature]] = {
     **{name: frozenset(interface) for name, interface in USER_RULE_INTERFACES.items()},
@@ -191,7 +187,7 @@ class Rulebook:
         for atom in one.heads:
             if atom.signature in READ_ONLY_PREDICATES:
                 what = f"{_form(atom.signature)} says what there is, and rules add nothing to it"
-                yield one.problem(what, atom.at, STATE_INSTEAD.get(atom.signature, ""))
+                yield one.problem(what, atom.at)
             elif atom.signature in INTERFACE_PREDICATES:
                 yield from self._constants_outside_domains(one, atom)
             elif self._is_misspelt(atom, one):
@@ -244,9 +240,10 @@ class Rulebook:
         of_world = self._applicable(world, world)  # with what they define
         return tuple(one for one in found if one.heads or one not in of_world)
 
-    def world_facts_named(self, encoding: str) -> frozenset[Signature]:
-        """Return the predicates of the world model that rules name which take part in an encoding without them."""
-        named = {atom.signature for one in self.rules_reaching(encoding) for atom in one.body}
+    def world_facts_named(self, encoding: str, lines: Container[str] | None = None) -> frozenset[Signature]:
+        """Return the predicates of the world model that rules name, all or those at some lines, in an encoding."""
+        rules = (one for one in self.rules_reaching(encoding) if lines is None or one.line in lines)
+        named = {atom.signature for one in rules for atom in one.body}
         return WORLD_FACTS_THERE.get(encoding, frozenset()) & named
 
     def _applicable(self, known: frozenset[Signature], read_only: frozenset[Signature]) -> tuple[Statement, ...]:

@@ -191,10 +191,10 @@ def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple
     )
 
 
-def world_facts_named(encoding: str, users: Sequence[Path]) -> frozenset[str]:
-    """Return the names of the predicates of the world model that users' rules want to be given in an encoding."""
+def world_facts_named(encoding: str, users: Sequence[Path], lines: Container[str] | None = None) -> frozenset[str]:
+    """Return the names of the predicates of the world model that users' rules, or those at some lines, want there."""
     # Raises CannotOpenError or BadInputError when the files are not valid.
-    return frozenset(name for name, _ in read_rules(users).world_facts_named(encoding)) if users else frozenset()
+    return frozenset(name for name, _ in read_rules(users).world_facts_named(encoding, lines)) if users else frozenset()
 
 
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:

@@ -56,6 +56,8 @@ def reconcile(
     facts += [f"kept({x})" for x in sorted(kept)]
     facts += [f"given_up({x},{node})" for x, node in sorted(given_up)]
     facts += [*(f"refused({x},{node})" for x, node in sorted(refused)), *world]
+    if rules_reach("reconciliation", rules):  # what they state of a node counts in place of what was seen of it
+        facts += [f"seen{fact[len('has') :]}" for fact in facts if fact.startswith("has(")]
     found: dict[str, list[tuple[str, ...]]] = {}
     for atom in solve([KB_ENCODINGS / "reconciliation.lp", *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))

@@ -64,7 +64,7 @@ class Activities:
             if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
                 agenda.plan(step)
                 continue
-            decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), turn), turn)
+            decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), found, turn), turn)
             if decision.command is not None:
                 agenda.record()
                 return decision
@@ -134,9 +134,10 @@ class Activities:
             return nothing_to_do("no step of the task plan settles what is open")
         return Decision(None, f"users' rules forbid {self.errands.forbidden}", TaskVerdict.LIMIT)
 
-    def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
-        """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""
-        if not isinstance(decision.command, Grasp) or not self.errands.blamed_so_far(turn.situation):
+    def _allowed(self, decision: Decision, doing: Activity, turn: StageTurn) -> Decision:
+        """Return a decision; `limit` in place of a grasp or a way to a goal while users' rules leave no plan so far."""
+        goes = doing.kind == "go" and decision.command is not None and self.errands.intention.knows_where_to_go
+        if not (goes or isinstance(decision.command, Grasp)) or not self.errands.blamed_so_far(turn.situation):
             return decision
         return Decision(None, f"{turn.stage} cannot be attained as far as is known", TaskVerdict.LIMIT)
 
@@ -150,7 +151,7 @@ class Activities:
             why = f"{turn.stage} cannot be attained: users' rules forbid {forbidden}"
         elif last.verdict is None:
             why = f"what the task asks for holds, but {self._doubt_of_done(turn.situation)}"
-        if self.errands.blamed and not self.errands.is_shut_out(turn.situation):
+        if self.errands.blamed not in why and not self.errands.is_shut_out:
             why = f"{why}; {self.errands.blamed}"
         if closing := rules_that_close(turn.situation):
             why = f"{why}; doors are closed by the rule{'s' * (len(closing) > 1)} at {' and '.join(closing)}"
@@ -158,6 +159,8 @@ class Activities:
 
     def _doubt_of_done(self, situation: Situation) -> str:
         """Return why the constraints may not have been kept when all goals hold, in words; "" when they surely were."""
+        if self.errands.blamed and self.errands.intention.plan is None:
+            return self.errands.blamed
         for actor, door in situation.closed_doors_passed:
             who = "the robot" if actor == ROBOT else actor
             return f"{who} went through {door.name}, which users' rules close"

@@ -7,7 +7,6 @@ end. A thing that is moved aside, or to a spot that the plan chose, is brought t
 from collections.abc import Sequence
 from dataclasses import replace
 
-from kb.reasoning.user_rules import world_facts_named
 from planner.carrying.preconditions import turn_cost
 from planner.deciding.bringing import bring_to_end
 from planner.deciding.stage_turn import StageTurn
@@ -34,7 +33,7 @@ class ErrandRunner:
         # The verdict `impossible`, for good, where users' rules leave no plan.
         self.forbidden = ""
         turn = self._updated(turn)
-        if self.is_shut_out(turn.situation):
+        if self.is_shut_out:
             why = f"{turn.stage} cannot be attained: {self.blamed}"
             return impossible(why, f"rules leave no plan: {self.blamed}", unless=None)
         for attempt in range(MAX_FAILURES):
@@ -65,11 +64,10 @@ class ErrandRunner:
         rules = "the rule" if len(blamed) == 1 else "the rules"
         return f"{rules} at {' and '.join(blamed)} leave{'s' * (len(blamed) == 1)} no plan" if blamed else ""
 
-    def is_shut_out(self, situation: Situation) -> bool:
-        """Return whether users' rules leave no plan, and not because they close doors."""
-        # No other way can be looked for.
-        lasting = not situation.closed and not self.intention.is_open
-        return bool(self.intention.blamed and lasting and not world_facts_named("task", situation.rules))
+    @property
+    def is_shut_out(self) -> bool:
+        """Whether users' rules leave no plan for good: no other way can be looked for."""
+        return self.intention.shut_out and not self.intention.is_open
 
     def blamed_so_far(self, situation: Situation) -> str:
         """Return the users' rules because of which there is no plan as far as is known, in words; "" for none."""

@@ -13,7 +13,7 @@ from geometry.manipulation.goals import At, End
 from geometry.motion.se2 import Pose
 from kb.world.model import Node
 
-HERE = "here"  # the place of everything where it is now
+HERE = "here"  # the place of a thing where it lay at first, and of the robot where it is now
 ANYWHERE = "anywhere"  # in place of an origin: a way that was refuted from two places counts as refuted from all
 
 
@@ -89,6 +89,16 @@ class TaskProblem:
     meanings: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     # The names of the goals of which it is not known what they are about, or where they hold: they have no places
     waiting: tuple[str, ...] = ()
+    past: tuple[str, ...] = ()  # what was done before, as facts of planner/asp/task/history.lp
+
+    def here(self, name: str) -> str:
+        """Return the name of the place at which an object lies now, or the robot is."""
+        return self.state.things[name].place if name in self.state.things else HERE
+
+    @property
+    def begins(self) -> int:
+        """The time at which a plan begins: the number of errands that were done before."""
+        return sum(fact.startswith(("done(carry(", "done(clear(")) for fact in self.past)
 
     def places_meant(self, meanings: Mapping[str, str]) -> frozenset[tuple[str, str]]:
         """Return the places of goals, by object and name, of what the goals are about."""

@@ -1,6 +1,6 @@
 """The facts of planner/asp/task: things, places, goals and rooms of a problem, and what geometry said so far."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -62,18 +62,21 @@ def problem_facts(
 ) -> tuple[str, ...]:
     """Return the facts of a problem that stay the same while answers come in, without full stops."""
     facts = [f"place({ROBOT},{HERE})"]
-    facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
-    facts += [f"place({name},{place})" for name, place in problem.places if place != HERE]
+    facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{problem.here(name)})")]
+    facts += [f"place({name},{place})" for name, place in problem.places if place != problem.here(name)]
     facts += [f"place({ROBOT},{place})" for place in problem.stands]
     facts += [f"aside({name},{place})" for name, place in aside]
-    facts += goal_facts(problem.goals, problem.waiting)
+    facts += problem.past
+    facts += goal_facts(problem.goals, problem.waiting, problem.here)
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
     facts += map(str, overlaps)
     facts += _part_facts(problem, spots)
     return (*facts, *_room_facts(problem, situation), *_world_facts(problem, situation))
 
 
-def goal_facts(goals: Sequence[PlacedGoal], waiting: Sequence[str]) -> Iterator[str]:
+def goal_facts(
+    goals: Sequence[PlacedGoal], waiting: Sequence[str], here: Callable[[str], str] = lambda _name: HERE
+) -> Iterator[str]:
     """Yield goals and wishes what they are about, whether they hold, and their order, as facts without full stops."""
     ranks: dict[str, int] = {}
     orders: dict[str, int] = {}
@@ -87,7 +90,7 @@ def goal_facts(goals: Sequence[PlacedGoal], waiting: Sequence[str]) -> Iterator[
         if goal.name in waiting:
             yield f"waits({goal.name})"
         if goal.holds:
-            yield f"fulfils({goal.subject},{HERE},{goal.name})"
+            yield f"fulfils({goal.subject},{here(goal.subject)},{goal.name})"
     yield from (f"rank({name},{number})" for name, number in ranks.items())
     yield from (f"order({parameter},{number})" for parameter, number in orders.items())
 
@@ -127,24 +130,26 @@ def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = froz
     names, outlines = [], []
     for name, place, outline in _exact_places(problem, spots):
         names.append((name, place))
-        outlines.append(outline if place == HERE else outline.buffer(-OVERLAP_ROUNDING))
+        outlines.append(outline if place == problem.here(name) else outline.buffer(-OVERLAP_ROUNDING))
     if not outlines:
         return
     tree = shapely.STRtree(outlines)
     for one, other in sorted(zip(*(column.tolist() for column in tree.query(outlines, "intersects")), strict=True)):
         (x, p), (y, q) = names[one], names[other]
-        if x < y and (p, q) != (HERE, HERE):
+        if x < y and (p, q) != (problem.here(x), problem.here(y)):
             yield Overlap(x, p, y, q)
 
 
 def _exact_places(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[tuple[str, str, Any]]:
     """Yield thing, place and outline there, where things lie now, at poses and at spots; regions are left out."""
     for name, lying in problem.state.things.items():
-        yield name, HERE, lying.outline
+        yield name, lying.place, lying.outline
     for (name, place), end in problem.places.items():
-        if place != HERE and isinstance(end, At):
+        if place == problem.here(name):
+            continue
+        if isinstance(end, At):
             yield name, place, shape_at_pose(problem.state.things[name].outline, end.pose)
-        elif place != HERE and isinstance(end, Inside) and (name, place) in spots:
+        elif isinstance(end, Inside) and (name, place) in spots:
             yield name, place, end.polygon.buffer(-SPOT_SLACK, join_style="mitre")
 
 
@@ -153,7 +158,7 @@ def _part_facts(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> It
     regions = [
         (key, end.polygon)
         for key, end in problem.places.items()
-        if isinstance(end, Inside) and key not in spots and key[1] != HERE
+        if isinstance(end, Inside) and key not in spots and key[1] != problem.here(key[0])
     ]
     for name, place, outline in _exact_places(problem, spots):
         for (thing, region), polygon in regions:
@@ -161,10 +166,10 @@ def _part_facts(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> It
                 yield f"within({name},{place},{region})"
 
 
-def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
+def things_in_way(problem: TaskProblem, overlaps: Iterable[Overlap]) -> list[str]:
     """Return the things that lie now where another thing may have to lie, each once."""
-    found = [one.thing if one.place == HERE else one.other for one in overlaps if HERE in (one.place, one.other_place)]
-    return list(dict.fromkeys(found))
+    pairs = (pair for one in overlaps for pair in ((one.thing, one.place), (one.other, one.other_place)))
+    return list(dict.fromkeys(name for name, place in pairs if place == problem.here(name)))
 
 
 def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
@@ -184,8 +189,8 @@ def _masks(problem: TaskProblem, shape: tuple[int, ...]) -> Iterator[tuple[str, 
     """Yield each place with the squares that it takes up, (rows, columns) bool on the arrays of the view."""
     rows, columns = shape
     for name, lying in problem.state.things.items():
-        yield name, HERE, squares(lying.outline, columns, rows)
-    for (name, place), end in ((key, end) for key, end in problem.places.items() if key[1] != HERE):
+        yield name, lying.place, squares(lying.outline, columns, rows)
+    for (name, place), end in ((key, end) for key, end in problem.places.items() if key[1] != problem.here(key[0])):
         yield name, place, _squares_of(end, problem.state.things[name].outline, (rows, columns))
     for place, stand in problem.stands.items():
         mask: Bools = np.zeros((rows, columns), np.bool_)

@@ -19,8 +19,9 @@ from planner.oracles.problem import HERE, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
+from planner.tasking.history import MAX_DISPLACEMENT, History
 from planner.tasking.proposal import TASK_ENCODING
-from planner.tasking.rule_effects import doors_at, doors_led_round, rules_without_plan
+from planner.tasking.rule_effects import doors_at, doors_led_round, rules_alone_leave_no_plan, rules_without_plan
 from planner.tasking.search import make_plan
 from planner.tasking.setting import (
     WhereGoalsHold,
@@ -32,7 +33,6 @@ from planner.tasking.setting import (
 from planner.tasking.settling import plan_that_settles, step_that_settles
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
-MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
 MORE_FLOOR = 1.25  # times the floor for which there was no plan, with which it is worth to look for one; a convention
 
 
@@ -84,9 +84,11 @@ class Intention:
         self._hopeless: Any = None  # what was believed when no plan was found last
         self._problem: TaskProblem | None = None  # of the present situation
         self._stage: Stage | None = None  # for which `_tried` counts
+        self._history = History()
         self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self._meant: Mapping[str, str] = {}  # the object that the last plan meant by each parameter of the task
         self.blamed: tuple[str, ...] = ()
+        self.shut_out = False  # whether these leave no plan for good, whatever else is found
 
     @property
     def plan(self) -> TaskPlan | None:
@@ -109,7 +111,8 @@ class Intention:
         """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters."""
         stage = self._without_dropped(stage)
         followed = self.followed if stage == self._stage else None
-        self._problem = problem_of(stage, situation, self.where)
+        self._history.note(situation)
+        self._problem = problem_of(stage, situation, self.where, self._history)
         if stage != self._stage:
             self._stage, self._tried = stage, []
         is_carried = followed is not None and [one.subject for one in followed.errands[:1]] == [situation.model.held]
@@ -118,20 +121,25 @@ class Intention:
         if self._problem is None or self._problem.waiting:
             self._kept = self._attempt = None
         else:
-            self._kept = self._kept_still(stage, self._problem, situation)
+            before, self._kept = self._kept, self._moved_on(stage, self._problem, situation)
+            if self._kept is not before:  # an errand came to its end
+                self._problem = problem_of(stage, situation, self.where, self._history) or self._problem
+            self._kept = self._kept_still(self._problem, situation)
             if self._kept is None:
                 self._kept = self._made(stage, self._problem, situation, avoid, turn)
         meant = self.meanings
         if any(situation.binding.get(parameter) != name for parameter, name in meant.items()):
             situation = with_meanings(situation, meant)
-            self._problem = problem_of(stage, situation, self.where)
+            self._problem = problem_of(stage, situation, self.where, self._history)
         return situation
 
     def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, str]:
         """Plan what settles what is open."""
         # Return its first step, or "" and the words for what users' rules forbid then.
         stage = self._without_dropped(stage)
-        problem = problem_of(stage, situation, self.where)
+        problem = problem_of(stage, situation, self.where, self._history)
+        if problem is not None and rules_reach(TASK_ENCODING.stem, situation.rules):
+            problem = replace(problem, past=self._history.facts(situation))
         refuted = () if self._attempt is None else self._attempt.refutations
         plan, left = plan_that_settles(problem, stage, situation, given, refuted)
         step = step_that_settles(plan, any(fact.startswith("stuck(") for fact in given))
@@ -187,14 +195,21 @@ class Intention:
         wish = None if self._kept is None else wish_of_place(errand.place, self._kept.stage)
         self._dropped |= set() if wish is None else {wish}
         others = () if self._problem is None else sorted(self._problem.nodes.keys() - {errand.subject})
-        given = tuple((name, HERE) for name in others)
-        self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given, found=why)))
+        here = (lambda _name: HERE) if self._problem is None else self._problem.here
+        given = tuple((name, here(name)) for name in others)
+        refuted = RefutedStep(errand.subject, here(errand.subject), errand.place, given, found=why)
+        self._tried.append((_lying(situation), refuted))
         self._kept = None
 
     @property
     def is_open(self) -> bool:
         """Whether it is open where exactly some goal of the problem holds."""
         return self._problem is None or self._problem.open or bool(self._problem.waiting)
+
+    @property
+    def knows_where_to_go(self) -> bool:
+        """Whether it is known where goals hold for the robot itself."""
+        return self._problem is not None and bool(self._problem.stands)
 
     def along_plan(self, situation: Situation) -> Situation:
         """Return the situation without the doors that the present errand does not pass, where users' rules count."""
@@ -222,23 +237,28 @@ class Intention:
         """Return a stage without the wishes that were dropped."""
         return replace(stage, wishes=tuple(pair for pair in stage.wishes if pair[0] not in self._dropped))
 
-    def _kept_still(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
-        """Return the plan under way, moved on over errands that are done; None when what it rests on fell."""
+    def _kept_still(self, problem: TaskProblem, situation: Situation) -> _Kept | None:
+        """Return the plan under way; None when what it rests on fell."""
         kept = self._kept
-        if kept is None or kept.stage != stage or kept.names != tuple(problem.nodes):
+        if kept is None or kept.names != tuple(problem.nodes) or kept.places != problem.places_meant({}):
             return None
-        if kept.places != problem.places_meant({}) or not kept.means_what_is_bound(problem):
-            return None
-        while kept.number < len(kept.plan.errands):
+        return kept if kept.means_what_is_bound(problem) and self._stands(kept, problem, situation) else None
+
+    def _moved_on(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
+        """Return the plan of a stage, moved on over errands that came to their ends, which are noted."""
+        kept = None if self._kept is None or self._kept.stage != stage else self._kept
+        while kept is not None and kept.number < len(kept.plan.errands):
             errand = kept.plan.errands[kept.number]
-            if errand.subject == ROBOT:
-                break
             spot = kept.spots.get((errand.subject, errand.place))
-            end = problem.places[errand.subject, errand.place] if spot is None else _moved_to_view(spot, situation)
+            known = problem.places.get((errand.subject, errand.place))
+            end = known if spot is None else _moved_to_view(spot, situation)
+            if end is None or errand.subject not in problem.nodes:
+                break  # the robot's own, or nothing is known of it any more
             if not meets_end(end, problem.state.things[errand.subject].outline):
                 break
+            self._history.note(situation, errand)
             kept = replace(kept, number=kept.number + 1)
-        return kept if self._stands(kept, problem, situation) else None
+        return kept
 
     def _stands(self, kept: _Kept, problem: TaskProblem, situation: Situation) -> bool:
         """Return whether all things lie as the plan expects, and no way that is left is seen to be blocked."""
@@ -270,10 +290,12 @@ class Intention:
         if all(goal.holds for goal in problem.goals) and not ruled:
             self._attempt = None
             return None
+        problem = replace(problem, past=self._history.facts(situation) if ruled else ())
         lying = _lying(situation)
         # More that is seen leaves less that may be free, so only more floor to put things on can bring a new plan.
         floor = int(math.log(max(1, situation.cost_maps.free(0).sum()), MORE_FLOOR))
-        believed = (lying, frozenset(problem.places), floor, len(self._tried))
+        doors = tuple((door.name, door.sides) for door in situation.rooms.doors) if ruled else ()
+        believed = (lying, frozenset(problem.places), floor, len(self._tried), doors)
         if self._hopeless is not None and (situation.model.held is not None or believed == self._hopeless):
             return None
         tried = [refutation for where, refutation in self._tried if where == lying]
@@ -283,6 +305,7 @@ class Intention:
             if not made.plan.unmet:
                 break
         self.blamed = rules_without_plan(made, situation)
+        self.shut_out = rules_alone_leave_no_plan(made, self.blamed, situation)
         self._hopeless = believed if made.plan.unmet else None
         self._attempt = made.plan if made.plan.unmet else None
         if made.plan.unmet:

@@ -14,7 +14,7 @@ from geometry.raster.rasterize import squares
 from geometry.raster.runs import mask_to_polygon
 from kb.world.rooms import NO_ROOM
 from planner.oracles.carry import FloorKind, Floors
-from planner.oracles.problem import HERE, TaskProblem
+from planner.oracles.problem import TaskProblem
 from planner.oracles.spots import (
     SPOT_SLACK,
     KeptWay,
@@ -29,8 +29,8 @@ from planner.oracles.spots import (
 def with_returns(problem: TaskProblem) -> TaskProblem:
     """Return the problem with ends for things that are where they shall be, so that they can be brought back there."""
     there = [goal.subject for goal in problem.goals if goal.holds and goal.subject in problem.nodes]
-    there += [name for name, place in problem.fulfils if place == HERE and name in problem.nodes]
-    ends = {(name, HERE): end_about(problem.state.things[name].outline) for name in there}
+    there += [name for name, place in problem.fulfils if place == problem.here(name) and name in problem.nodes]
+    ends = {(name, problem.here(name)): end_about(problem.state.things[name].outline) for name in there}
     return replace(problem, places={**problem.places, **ends})
 
 
@@ -87,7 +87,7 @@ class Offers:
                 new[name, f"spot{number}"] = end
                 self.aside.append((name, f"spot{number}"))
             for (thing, place), region in problem.places.items():
-                if thing == name and place != HERE and isinstance(region, Inside):
+                if thing == name and place != problem.here(name) and isinstance(region, Inside):
                     for number, end in enumerate(self._spots_within(name, region, problem), 1):
                         new[name, f"{place}_{number}"] = end
                         fulfils[name, f"{place}_{number}"] = problem.fulfils[name, place]
@@ -102,7 +102,8 @@ class Offers:
         for name in [name for name in self._in_way if name not in self._further]:
             self._further.add(name)
             for (thing, place), region in problem.places.items():
-                if (thing, place) not in self.spots and thing == name and place != HERE and isinstance(region, Inside):
+                offered = (thing, place) in self.spots or place == problem.here(name)
+                if thing == name and not offered and isinstance(region, Inside):
                     for number, end in enumerate(self._turned_within(name, region, problem), 1):
                         new[name, f"{place}_turned{number}"] = end
                         fulfils[name, f"{place}_turned{number}"] = problem.fulfils[name, place]

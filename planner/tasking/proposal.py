@@ -41,6 +41,8 @@ def propose(
     found: dict[int, Errand] = {}
     for atom in (atom for atom in atoms if atom.name == "occurs"):
         step, time = atom.arguments[0], atom.arguments[1].number
+        if f"done({step},{time})" in facts:
+            continue  # the past of the plan
         words = [str(word) for word in step.arguments]
         if step.name == "go":
             doors.setdefault(time, []).append(words[0])

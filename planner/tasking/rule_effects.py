@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any, NamedTuple
 
 from geometry.kernels.arrays import XY
 from kb.reasoning.encodings import BoundedAnswer
 from kb.reasoning.solver import solve_within
-from kb.reasoning.user_rules import rules_reach, rules_to_blame
+from kb.reasoning.user_rules import rules_reach, rules_to_blame, world_facts_named
 from kb.tracing.decisions import record_decisions
 from kb.world.model import hundredths
 from kb.world.place_names import SAME_DOOR
@@ -17,6 +18,7 @@ from planner.tasking.facts import problem_facts
 from planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
 from planner.tasking.search import MadePlan
 
+ANY_ROOM = "unseen_room"  # a room that nobody has seen, behind a door of which nothing is known
 DOOR_COMMANDS = 1  # that planner/asp/task/go.lp reckons for a pass through a door
 
 
@@ -110,6 +112,22 @@ def rules_without_plan(made: MadePlan, situation: Situation) -> tuple[str, ...]:
     if not made.facts or not made.plan.unmet or not rules_reach(TASK_ENCODING.stem, rules):
         return ()
     return rules_to_blame(TASK_ENCODING, rules, made.facts, _leaves_goals)
+
+
+def rules_alone_leave_no_plan(made: MadePlan, blamed: Sequence[str], situation: Situation) -> bool:
+    """Return whether users' rules leave no plan whatever geometry answers and whatever else is seen, for good."""
+    if not blamed or situation.closed or world_facts_named(TASK_ENCODING.stem, situation.rules, blamed):
+        return False  # other ways may be found, or what is believed may change
+    if any(fact.startswith("done(") for fact in made.facts):
+        return False  # it may be what was done that leaves none
+    facts = [fact for fact in made.facts if not fact.startswith(("refuted(", "overlap("))]
+    known = {fact.rpartition(",")[2][:-1] for fact in facts if fact.startswith("lies(")}
+    facts += [f"connects(way_to_{ANY_ROOM},{room},{ANY_ROOM})" for room in sorted(known)]
+    things = [fact[len("thing(") : -1] for fact in facts if fact.startswith("thing(")]
+    for name, room in product(things, sorted({*known, ANY_ROOM})):  # as if there were room for everything everywhere
+        facts += [f"place({name},any_{room})", f"aside({name},any_{room})", f"lies({name},any_{room},{room})"]
+    answer = _answer(tuple(facts), situation)
+    return answer.proved and (answer.atoms is None or _leaves_goals(answer.atoms))
 
 
 def _closes(atoms: Sequence[Any]) -> bool:

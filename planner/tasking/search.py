@@ -71,7 +71,7 @@ class PlanSearch:
         overlaps = tuple(overlaps_of(problem))
         self._facts = problem_facts(problem, (), situation, frozenset(), overlaps)
         self._cut = False  # whether a search of clingo was cut off by its limit
-        self._offers.note_in_way(things_in_way(overlaps))
+        self._offers.note_in_way(things_in_way(problem, overlaps))
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
@@ -127,7 +127,7 @@ class PlanSearch:
     def _propose(self, horizon: int) -> Proposal:
         """Return the plan of the encoding with at most `horizon` errands."""
         before = [f"meant_before({parameter},{name})" for parameter, name in sorted(self._meant.items())]
-        facts = (f"horizon({horizon})", *self._facts, *before, *answer_facts(self._answers))
+        facts = (f"horizon({self._problem.begins + horizon})", *self._facts, *before, *answer_facts(self._answers))
         with record_decisions():  # of all proposals, only the last one is recorded
             proposal = propose(facts, self._situation.rules)
         self._cut = self._cut or not proposal.proved
@@ -136,7 +136,8 @@ class PlanSearch:
     def _ask_about_meanings(self) -> None:
         """Ask geometry about the ways of things among which parameters may choose, to compare them at once."""
         several = {name for names in self._problem.meanings.values() if len(names) > 1 for name in names}
-        asked = [(name, place) for name, place in self._problem.places if name in several and place != HERE]
+        here = self._problem.here
+        asked = [(name, place) for name, place in self._problem.places if name in several and place != here(name)]
         commands, hoped = dict(self._answers.commands), set(self._answers.hoped)
         for name, place in asked[:MAX_MEANING_QUESTIONS]:
             errand = Errand("carry", name, place)
@@ -144,8 +145,8 @@ class PlanSearch:
                 break  # with users' rules the way of an errand is that of its doors
             answer = self._ask(self._problem.state, errand, frozenset())
             if answer.after is not None:
-                commands[name, HERE, place] = answer.commands
-                hoped |= {(name, HERE, place)} if answer.certainty == Certainty.HOPED else set()
+                commands[name, here(name), place] = answer.commands
+                hoped |= {(name, here(name), place)} if answer.certainty == Certainty.HOPED else set()
         self._answers = replace(self._answers, commands=commands, hoped=frozenset(hoped))
 
     def _price_of_meanings(self, meanings: Sequence[tuple[str, str]]) -> int:
@@ -171,7 +172,7 @@ class PlanSearch:
 
     def _estimated(self, errands: Sequence[Errand]) -> int:
         """Return how many commands the encoding reckons for some errands."""
-        place = dict.fromkeys((*self._problem.nodes, ROBOT), HERE)
+        place = {name: self._problem.here(name) for name in (*self._problem.nodes, ROBOT)}
         total = 0
         for errand in errands:
             way = errand.subject, place[errand.subject], errand.place

@@ -20,7 +20,9 @@ from planner.goals.robot_goals import Destination, jointly, robot_stands_on
 from planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
+from planner.tasking.history import History
 
+NO_HISTORY = History()  # of a run in which nothing was done
 RULED_ENCODING = "task"  # the encoding of task plans, without `.lp`
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
@@ -43,18 +45,19 @@ class WhereGoalsHold(NamedTuple):
         return self.place(goal, node, self.origin(str(goal.args[0]), node, situation), situation)
 
 
-def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> TaskProblem | None:
+def problem_of(
+    stage: Stage, situation: Situation, where: WhereGoalsHold, history: History = NO_HISTORY
+) -> TaskProblem | None:
     """Return the problem of a stage; None while a thing that is askew is in hand: it is set down first."""
     model = situation.model
     held = model.object(model.held or "")
     if held is not None and held.polygon is not None and not is_grid_aligned(held.polygon):
         return None  # amid a turn: a plan is made for things as they are set down
     things = {node.name: node for node in model.objects if _can_be_carried(node)}
-    state = TableState(
-        {name: Lying(to_view_frame(node.polygon, situation), Pose(0.0, 0.0, 0.0)) for name, node in things.items()},
-        model.place_on_view,
-        model.held,
-    )
+    ruled = rules_reach(RULED_ENCODING, situation.rules)
+    put, unmoved = history.places(situation) if ruled else {}, Pose(0.0, 0.0, 0.0)
+    lying = {x: Lying(to_view_frame(node.polygon, situation), unmoved, put.get(x, HERE)) for x, node in things.items()}
+    state = TableState(lying, model.place_on_view, model.held)
     goals: list[PlacedGoal] = []
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
@@ -62,7 +65,6 @@ def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> Tas
     waiting: list[str] = []
     as_it_lies = where._replace(origin=_where_it_lies)
     unlike: set[tuple[str, str]] = set()  # parameters with objects for which it is open where a goal holds
-    ruled = rules_reach(RULED_ENCODING, situation.rules)
     for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
         ends, is_open, holds = (
@@ -82,7 +84,8 @@ def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> Tas
             if (other_open and not other_holds) or not (other_ends or other_holds):
                 unlike.add((str(goal.args[0]), other.name))
                 continue
-            fulfils |= {(other.name, HERE): (*fulfils.get((other.name, HERE), ()), name)} if other_holds else {}
+            here = other.name, state.things[other.name].place
+            fulfils |= {here: (*fulfils.get(here, ()), name)} if other_holds else {}
             for end_name, end in other_ends.items():
                 places[other.name, place_name(name, end_name)] = end
                 fulfils[other.name, place_name(name, end_name)] = (name,)

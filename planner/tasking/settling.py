@@ -36,7 +36,8 @@ def plan_that_settles(
     placed = () if problem is None else problem.goals
     about = [*(f"{goal.name}: {goal.words}" for goal in placed), *Answers(refutations=refuted).found]
     without: tuple[str, ...] = ()
-    given_facts = (f"horizon({horizon})", *facts)
+    begins = 0 if problem is None else problem.begins
+    given_facts = (f"horizon({begins + horizon})", *facts)
     found = propose(given_facts, situation.rules, about)
     while situation.rules and found.unmet == (UNMET_PLAN,) and found.proved:
         more = rules_to_blame(TASK_ENCODING, situation.rules, given_facts, lambda _atoms: False, without)

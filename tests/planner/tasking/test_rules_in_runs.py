@@ -141,3 +141,60 @@ def test_facts_of_the_world_model_are_known_to_the_task_plan(tmp_path: Path, rul
     assert (episode.verdict != "done") is blamed
     assert episode.verdict != "impossible"  # what is believed may change
     assert (f"{rules}:1" in episode.reason) is blamed
+
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+EXCHANGE, PLACES = "push_exchange_rooms", "push_exchange_places"
+Y_AWAY_FIRST = ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), at(Y, here, T)."
+X_AFTER_Y = ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not brought(Y, _, _, T-1)."
+
+
+def moves_of(episode: utak.Episode, name: str) -> list[int]:
+    """Return the numbers of the steps at which a thing lay elsewhere than the step before."""
+    shapes = [step.line["objects"][name] for step in episode]
+    return [number for number in range(1, len(shapes)) if shapes[number] != shapes[number - 1]]
+
+
+@pytest.mark.parametrize(("example", "rule"), [(EXCHANGE, Y_AWAY_FIRST), (EXCHANGE, X_AFTER_Y), (PLACES, Y_AWAY_FIRST)])
+def test_what_was_done_is_the_past_of_a_plan_made_anew(tmp_path: Path, example: str, rule: str) -> None:
+    """The plan is made anew once y was brought; it lies no longer where it was, and its errand counts."""
+    scenario = utak.Scenario.read(EXAMPLES / example)
+    episode = utak.Run(scenario, rules=[rule_file(tmp_path, rule)]).finish()
+    assert (episode.verdict, episode.achieved) == ("done", True)
+    assert min(moves_of(episode, "r1")) < min(moves_of(episode, "g1"))  # x is not touched before y is away
+
+
+def test_a_number_of_errands_counts_over_the_whole_run(tmp_path: Path) -> None:
+    """Two things must be brought, and only one errand is allowed: one is not brought and then forgotten."""
+    rules = rule_file(tmp_path, ":- #count { X, T : brought(X, _, _, T), X != utak } > 1.")
+    episode = utak.Run(utak.Scenario.read(EXAMPLES / EXCHANGE), rules=[rules]).finish()
+    assert episode.verdict != "done" and f"{rules}:1" in episode.reason
+
+
+def test_the_robot_does_not_go_where_a_rule_leaves_it_no_plan(tmp_path: Path) -> None:
+    """No door is closed, but no other room may be where the robot goes to."""
+    rules = rule_file(tmp_path, ":- occurs(arrive(P), T), lies(utak, P, R), in(utak, Q), R != Q.")
+    episode = utak.Run(utak.Scenario.read(EXAMPLES / "go_next_room"), rules=[rules]).finish()
+    assert episode.verdict == "limit" and f"{rules}:1" in episode.reason
+    assert all(step.utak[0] < 21 for step in episode)
+
+
+@pytest.mark.parametrize("idle", ["", ":- unseen(R, N), N > 900000.\n"])
+def test_an_unrelated_rule_about_the_world_does_not_weaken_a_proof(tmp_path: Path, idle: str) -> None:
+    """Two things must be brought and one may be: that is impossible, whatever else another rule speaks of."""
+    rules = rule_file(tmp_path, f"{idle}:- #count {{ X : brought(X, _, _, _) }} > 1.")
+    episode = utak.Run(utak.Scenario.read(EXAMPLES / EXCHANGE), rules=[rules]).finish()
+    assert episode.verdict == "impossible" and f"{rules}:{2 if idle else 1}" in episode.reason
+
+
+def test_a_property_that_a_rule_states_counts_for_what_is_meant(tmp_path: Path) -> None:
+    """Of a brick and a square the brick's colour makes it a square, and the square is none: the brick is brought."""
+    rules = rule_file(
+        tmp_path,
+        "has(N, shape, square, 99) :- has(N, colour, r, C), C >= 50.\n"
+        "has(N, shape, square, 1) :- has(N, colour, K, _), K != r.\n",
+    )
+    scenario = utak.Scenario.from_text(world=(EXAMPLES / EXCHANGE / "world.lp").read_text(), **SQUARE)
+    episode = utak.Run(scenario, rules=[rules], max_steps=40).finish()
+    assert moves_of(episode, "g1") == [] and moves_of(episode, "r1")
+    assert episode.idle_rules == ()
