@@ -19,7 +19,7 @@ from typing import Any
 
 from benchmarks.bounded import EXAMPLES_FOLDER
 from benchmarks.rules.track import WALL_AT, TrueTrack
-from benchmarks.rules.tried import GO, TRIED_RULES
+from benchmarks.rules.tried import TRIED_RULES, WALKS
 from kb.language.diagnostics import BadInputError
 from simulator.episode.episode import EpisodeLog
 from simulator.run.robots import make_robot
@@ -36,7 +36,7 @@ class RuleRow:
 
     Attributes
     ----------
-    rule, kind, example : which run it was; example is "" for a rule that is refused when it is read.
+    rule, kind, example : which run it was.
     verdict : of the run, or `refused`.
     kept : whether the rule was kept by the true track, or the refusal says why.
     named : whether the verdict's reason names the rule.
@@ -60,13 +60,13 @@ class RuleRow:
 
 
 def tried(name: str, example: str) -> RuleRow:
-    """Return the row of a rule in a scenario; example is "" for one that is to be refused."""
+    """Return the row of a rule in a scenario."""
     rule = TRIED_RULES[name]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.lp"
         path.write_text(f"{rule.text}\n", encoding="utf-8")
         lines: list[dict[str, Any]] = []
-        scenario = read_scenario(EXAMPLES_FOLDER / (example or GO))
+        scenario = read_scenario(EXAMPLES_FOLDER / example)
         settings = Settings(kb_files=(str(path),), max_steps=MAX_RULED_COMMANDS)
         try:
             session = Session(scenario, settings, make_robot, EpisodeLog(None, listen=lines.append))
@@ -75,7 +75,7 @@ def tried(name: str, example: str) -> RuleRow:
             message = "; ".join(f"{one.what} {one.hint}" for one in error.problems)
             said = bool(rule.refused) and rule.refused in message
             return RuleRow(name, rule.kind, example, "refused", said, True, False, message)
-        track = TrueTrack([line for line in lines if "step" in line], WALL_AT[example or GO])
+        track = TrueTrack([line for line in lines if "step" in line], WALL_AT[example])
         kept = rule.kept is not None and rule.kept(track)
         named, idle = (rule.said or str(path)) in result.reason, any(str(path) in one for one in result.idle_rules)
         return RuleRow(name, rule.kind, example, result.verdict, kept, named, idle, result.reason)
@@ -102,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("-o", dest="output", type=Path, help="write the rows as JSON lines to this file")
     options = parser.parse_args(arguments)
     names = options.names or list(TRIED_RULES)
-    jobs = [(name, example) for name in names for example in TRIED_RULES[name].examples or ("",)]
+    jobs = [(name, example) for name in names for example in TRIED_RULES[name].examples or WALKS]
     rows: list[RuleRow] = []
     with ProcessPoolExecutor(options.jobs) as pool:
         for row in pool.map(tried, *zip(*jobs, strict=True)):

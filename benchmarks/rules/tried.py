@@ -28,23 +28,25 @@ class Tried:
     said: str = ""
 
 
-GO, TWO_DOORS, SQUARE, EXCHANGE = WALL_AT
-WALKS, CARRIES = (GO, TWO_DOORS), (SQUARE, EXCHANGE)
-PLACED_AT_GOAL = (
-    "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."  # time begins anew with each plan: orders speak of goals
-)
+GO, TWO_DOORS, SQUARE, EXCHANGE, CORNERS, PLACES, NO_DOOR, TWO_CORNERS = WALL_AT
+WALKS, CARRIES, PAIRS = (GO, TWO_DOORS), (SQUARE, EXCHANGE), (EXCHANGE, CORNERS)
+PLACED_AT_GOAL = "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."
+STUCK_STEPS = ("pull", "make_way", "try", "feel", "bare")  # what may settle that something seems impossible
 TRIED_RULES: dict[str, Tried] = {
     "no_door": Tried("doors", ":- occurs(go(D), T).", lambda t: not t.passes(), (GO, SQUARE)),
     "no_narrow": Tried(
         "doors",
         ":- occurs(go(D), T), width(D, W), W < 450.",
-        lambda t: t.wall != WALL_AT[GO] or not t.passes(),
+        lambda t: bool(t.passes()) == (t.wall == WALL_AT[TWO_DOORS]),
         WALKS,
     ),
     "no_wide": Tried(
-        "doors", ":- occurs(go(D), T), width(D, W), W > 450.", lambda t: t.wall == 21 or not t.passes(), WALKS
+        "doors",
+        ":- occurs(go(D), T), width(D, W), W > 450.",
+        lambda t: bool(t.passes()) == (t.wall == WALL_AT[GO]),
+        WALKS,
     ),
-    "no_first_door": Tried("doors", ":- occurs(go(d1), T).", lambda t: True, (TWO_DOORS, SQUARE)),
+    "no_first_door": Tried("doors", ":- occurs(go(d1), T).", lambda t: not t.passes_where("d1"), (TWO_DOORS, SQUARE)),
     "nothing_through": Tried(
         "doors",
         ":- occurs(go(D), T), brought(X, _, _, T), X != utak.",
@@ -54,22 +56,40 @@ TRIED_RULES: dict[str, Tried] = {
     "y_first": Tried(
         "orders",
         f"{PLACED_AT_GOAL} :- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not placed(Y, T).",
-        lambda t: t.moved()[:1] != ["g1"] or len(t.things) < 2 or t.wall == 23,
-        (EXCHANGE, SQUARE),
+        lambda t: t.moved()[:1] != ["g1"],
+        PAIRS,
     ),
     "x_first": Tried(
         "orders",
         f"{PLACED_AT_GOAL} :- brought(Y, _, _, T), meaning(x, X), meaning(y, Y), not placed(X, T).",
-        lambda t: t.moved()[:1] != ["r1"] or t.wall == 23,
-        (EXCHANGE, SQUARE),
+        lambda t: t.moved()[:1] != ["r1"],
+        PAIRS,
+    ),
+    "y_away_first": Tried(
+        "orders",
+        ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), at(Y, here, T).",
+        lambda t: t.moved() == ["r1", "g1"],
+        (EXCHANGE, CORNERS, PLACES),
+    ),
+    "x_right_after_y": Tried(
+        "orders",
+        ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not brought(Y, _, _, T-1).",
+        lambda t: t.moved() == ["r1", "g1"],
+        PAIRS,
     ),
     "one_thing": Tried(
         "counts", ":- #count { X, T : brought(X, _, _, T), X != utak } > 1.", lambda t: len(t.moved()) <= 1, CARRIES
     ),
     "one_pass": Tried("counts", ":- #count { D, T : occurs(go(D), T) } > 1.", lambda t: len(t.passes()) <= 1, CARRIES),
     "no_carry": Tried("counts", ":- brought(X, _, _, _), X != utak.", lambda t: not t.moved(), CARRIES),
-    "dear_doors": Tried("prices", ":~ occurs(go(D), T). [9@1, D, T]", lambda t: True, (GO, SQUARE)),
-    "cheap_feeling": Tried("prices", "price(feel(S), 1) :- stuck(S, impossible).", lambda t: True, (GO, SQUARE)),
+    "dear_doors": Tried("prices", ":~ occurs(go(D), T). [9@1, D, T]", lambda t: len(t.passes()) == 1, (GO, SQUARE)),
+    "cheap_feeling": Tried(
+        "prices",
+        "price(feel(S), 1) :- stuck(S, impossible).",
+        lambda t: t.first_planned(STUCK_STEPS) == "feel",
+        (NO_DOOR, TWO_CORNERS),
+        said="cannot be attained",
+    ),
     "apart": Tried(
         "end states",
         ":- horizon(H), at(X, P, H), at(Y, Q, H), X < Y, lies(X, P, R), lies(Y, Q, R).",
@@ -80,7 +100,7 @@ TRIED_RULES: dict[str, Tried] = {
         "end states",
         ":- horizon(H), at(X, P, H), at(Y, Q, H), X < Y, lies(X, P, R), lies(Y, Q, S), R != S.",
         lambda t: t.ends_east("g1") == t.ends_east("r1"),
-        (SQUARE,),
+        CARRIES,
     ),
     "not_what_is_square": Tried(
         "meanings",
@@ -88,6 +108,13 @@ TRIED_RULES: dict[str, Tried] = {
         lambda t: not t.ends_east("g1"),
         CARRIES,
         said="nothing seen so far is x",
+    ),
+    "red_are_squares": Tried(
+        "meanings",
+        "has(N, shape, square, 99) :- has(N, colour, r, _). has(N, shape, square, 1) :- has(N, colour, K, _), K != r.",
+        lambda t: "g1" not in t.moved(),
+        CARRIES,
+        said="nothing seen so far is y",
     ),
     "x_is_not_large": Tried(
         "meanings", ":- meaning(x, X), size(X, S), S > 8.", lambda t: "g1" not in t.moved(), CARRIES
@@ -119,13 +146,14 @@ TRIED_RULES: dict[str, Tried] = {
         lambda t: not t.passes(),
         (GO, SQUARE),
     ),
-    "all_seen": Tried("aggregates", ":- #sum { N, R : unseen(R, N) } > 100000.", lambda t: True, (GO, SQUARE)),
+    "all_seen": Tried(
+        "aggregates", ":- #sum { N, R : unseen(R, N) } > 100000.", lambda t: bool(t.passes()), (GO, SQUARE)
+    ),
     "few_doors": Tried(
-        "aggregates", ":- #count { D : connects(D, _, _) } > 9, occurs(go(E), T).", lambda t: True, WALKS
+        "aggregates", ":- #count { D : connects(D, _, _) } > 9, occurs(go(E), T).", lambda t: bool(t.passes()), WALKS
     ),
     "a_step_as_a_fact": Tried("refused", "occurs(go(d1), 0).", refused="says what there is"),
     "an_unknown_step": Tried("refused", ":- occurs(jump(X), T).", refused="unknown step jump/1"),
     "a_misspelt_word": Tried("refused", ":- widht(D, W), occurs(go(D), T).", refused="did you mean width?"),
     "a_believed_room": Tried("refused", "in(X, r1) :- held(X).", refused="this changes nothing"),
-    "a_claimed_shape": Tried("refused", "has(X, shape, square, 99) :- candidate(X, _).", refused="shape(N, S, C)"),
 }

@@ -2,7 +2,7 @@
 
 setting       problem_of: the problem of a stage, from what is believed
 task_plan     TaskPlan, Errand, RefutedStep: the values
-history       History: what was done before a plan is made
+history       DoneErrands: what was done before a plan is made
 facts         the facts of the encoding
 offers        Offers: places for things that are in the way
 rule_effects  doors that users' rules close, and rules that leave no plan

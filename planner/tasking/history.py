@@ -22,7 +22,7 @@ class _Done(NamedTuple):
     errand: Errand | None = None  # the errand of a plan that came to its end so; None for none
 
 
-class History:
+class DoneErrands:
     """Remembers what was brought somewhere, by tracks: by the plan, or by whatever else the robot did."""
 
     def __init__(self) -> None:

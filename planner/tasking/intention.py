@@ -19,7 +19,7 @@ from planner.oracles.problem import HERE, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.tasking.history import MAX_DISPLACEMENT, History
+from planner.tasking.history import MAX_DISPLACEMENT, DoneErrands
 from planner.tasking.proposal import TASK_ENCODING
 from planner.tasking.rule_effects import doors_at, doors_led_round, rules_alone_leave_no_plan, rules_without_plan
 from planner.tasking.search import make_plan
@@ -84,7 +84,7 @@ class Intention:
         self._hopeless: Any = None  # what was believed when no plan was found last
         self._problem: TaskProblem | None = None  # of the present situation
         self._stage: Stage | None = None  # for which `_tried` counts
-        self._history = History()
+        self._history = DoneErrands()
         self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self._meant: Mapping[str, str] = {}  # the object that the last plan meant by each parameter of the task
         self.blamed: tuple[str, ...] = ()

@@ -20,9 +20,9 @@ from planner.goals.robot_goals import Destination, jointly, robot_stands_on
 from planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.tasking.history import History
+from planner.tasking.history import DoneErrands
 
-NO_HISTORY = History()  # of a run in which nothing was done
+NOTHING_DONE = DoneErrands()  # of a run in which nothing was done
 RULED_ENCODING = "task"  # the encoding of task plans, without `.lp`
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
@@ -46,7 +46,7 @@ class WhereGoalsHold(NamedTuple):
 
 
 def problem_of(
-    stage: Stage, situation: Situation, where: WhereGoalsHold, history: History = NO_HISTORY
+    stage: Stage, situation: Situation, where: WhereGoalsHold, history: DoneErrands = NOTHING_DONE
 ) -> TaskProblem | None:
     """Return the problem of a stage; None while a thing that is askew is in hand: it is set down first."""
     model = situation.model
