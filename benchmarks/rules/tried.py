@@ -28,8 +28,8 @@ class Tried:
     said: str = ""
 
 
-GO, TWO_DOORS, SQUARE, EXCHANGE, CORNERS, PLACES, NO_DOOR, TWO_CORNERS = WALL_AT
-WALKS, CARRIES, PAIRS = (GO, TWO_DOORS), (SQUARE, EXCHANGE), (EXCHANGE, CORNERS)
+GO, TWO_DOORS, SQUARE, EXCHANGE, BOTH_CORNERS, SWAPPED_PLACES, WITHOUT_DOOR, ONE_IN_TWO = WALL_AT
+WALKS, CARRIES, BRING_TWO = (GO, TWO_DOORS), (SQUARE, EXCHANGE), (EXCHANGE, BOTH_CORNERS)
 PLACED_AT_GOAL = "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."
 STUCK_STEPS = ("pull", "make_way", "try", "feel", "bare")  # what may settle that something seems impossible
 TRIED_RULES: dict[str, Tried] = {
@@ -57,25 +57,25 @@ TRIED_RULES: dict[str, Tried] = {
         "orders",
         f"{PLACED_AT_GOAL} :- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not placed(Y, T).",
         lambda t: t.moved()[:1] != ["g1"],
-        PAIRS,
+        BRING_TWO,
     ),
     "x_first": Tried(
         "orders",
         f"{PLACED_AT_GOAL} :- brought(Y, _, _, T), meaning(x, X), meaning(y, Y), not placed(X, T).",
         lambda t: t.moved()[:1] != ["r1"],
-        PAIRS,
+        BRING_TWO,
     ),
     "y_away_first": Tried(
         "orders",
         ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), at(Y, here, T).",
         lambda t: t.moved() == ["r1", "g1"],
-        (EXCHANGE, CORNERS, PLACES),
+        (EXCHANGE, BOTH_CORNERS, SWAPPED_PLACES),
     ),
     "x_right_after_y": Tried(
         "orders",
         ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not brought(Y, _, _, T-1).",
         lambda t: t.moved() == ["r1", "g1"],
-        PAIRS,
+        BRING_TWO,
     ),
     "one_thing": Tried(
         "counts", ":- #count { X, T : brought(X, _, _, T), X != utak } > 1.", lambda t: len(t.moved()) <= 1, CARRIES
@@ -87,7 +87,7 @@ TRIED_RULES: dict[str, Tried] = {
         "prices",
         "price(feel(S), 1) :- stuck(S, impossible).",
         lambda t: t.first_planned(STUCK_STEPS) == "feel",
-        (NO_DOOR, TWO_CORNERS),
+        (WITHOUT_DOOR, ONE_IN_TWO),
         said="cannot be attained",
     ),
     "apart": Tried(

@@ -118,8 +118,9 @@ def rules_alone_leave_no_plan(made: MadePlan, blamed: Sequence[str], situation: 
     """Return whether users' rules leave no plan whatever geometry answers and whatever else is seen, for good."""
     if not blamed or situation.closed or world_facts_named(TASK_ENCODING.stem, situation.rules, blamed):
         return False  # other ways may be found, or what is believed may change
-    if any(fact.startswith("done(") for fact in made.facts):
-        return False  # it may be what was done that leaves none
+    named = {x for x, parameter in situation.task.parameters.items() if parameter.kind == "object"}
+    if any(fact.startswith("done(") for fact in made.facts) or named - situation.binding.keys():
+        return False  # it may be what was done that leaves none, or what is not found yet that helps
     facts = [fact for fact in made.facts if not fact.startswith(("refuted(", "overlap("))]
     known = {fact.rpartition(",")[2][:-1] for fact in facts if fact.startswith("lies(")}
     facts += [f"connects(way_to_{ANY_ROOM},{room},{ANY_ROOM})" for room in sorted(known)]

@@ -1,8 +1,10 @@
 """Rules of users in whole runs, and in decisions about what settles something: what they say is what is done."""
 
+import re
 from pathlib import Path
 
 import pytest
+import shapely
 
 import utak
 from kb.language.diagnostics import BadInputError
@@ -18,6 +20,16 @@ object(t1, c, "POLYGON ((21 8, 18 8, 18 11, 21 11, 21 8))").
 object(t2, d, "POLYGON ((12 20, 12 23, 15 23, 15 20, 12 20))").
 """
 )
+
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+EXCHANGE, PLACES = "push_exchange_rooms", "push_exchange_places"
+
+
+def documented(number: str) -> Path:
+    """Return the path of a rule of docs/rules, by its number."""
+    (found,) = (EXAMPLES.parent / "docs" / "rules").glob(f"{number}_*.lp")
+    return found
 
 
 def rule_file(folder: Path, text: str) -> Path:
@@ -63,7 +75,7 @@ def test_an_unknown_step_in_a_body_is_refused(tmp_path: Path, rule: str, hint: s
     assert [problem.hint for problem in caught.value.problems] == [hint]
 
 
-def test_a_priced_door_is_not_passed_while_the_robot_looks_about(tmp_path: Path) -> None:
+def test_a_priced_door_is_not_passed_while_the_robot_looks_about() -> None:
     """Of two doors the narrow one has a price: neither the robot nor what it carries goes through."""
     world = (
         """table(27, 39).
@@ -79,8 +91,7 @@ object(t1, t, "POLYGON ((6 9, 6 11, 8 11, 8 9, 6 9))").
     scenario = utak.Scenario.from_text(
         world=world, start="object(x). shape(x, square).", goal="in(x, room(next)).", expect=expected
     )
-    rules = rule_file(tmp_path, ":~ occurs(go(D), T), width(D, W), W < 500. [20@1, narrow(D, T)]")
-    episode = utak.Run(scenario, rules=[rules]).finish()
+    episode = utak.Run(scenario, rules=[documented("10")]).finish()
     assert (episode.verdict, episode.achieved) == ("done", True)
 
 
@@ -143,8 +154,6 @@ def test_facts_of_the_world_model_are_known_to_the_task_plan(tmp_path: Path, rul
     assert (f"{rules}:1" in episode.reason) is blamed
 
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
-EXCHANGE, PLACES = "push_exchange_rooms", "push_exchange_places"
 Y_AWAY_FIRST = ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), at(Y, here, T)."
 X_AFTER_Y = ":- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not brought(Y, _, _, T-1)."
 
@@ -198,3 +207,61 @@ def test_a_property_that_a_rule_states_counts_for_what_is_meant(tmp_path: Path) 
     episode = utak.Run(scenario, rules=[rules], max_steps=40).finish()
     assert moves_of(episode, "g1") == [] and moves_of(episode, "r1")
     assert episode.idle_rules == ()
+
+
+def middles(episode: utak.Episode, name: str) -> list[tuple[float, float]]:
+    """Return where the middle of a thing was at each step, (x, y) in squares, table frame."""
+    centres = [shapely.Polygon(step.line["objects"][name]).centroid for step in episode]
+    return [(point.x, point.y) for point in centres]
+
+
+TWO_THINGS = "object(x). shape(x, square). object(y). shape(y, brick)."
+KEPT_BRICK = "object(x). shape(x, square). object(keep). shape(keep, brick)."
+AT_THE_DOOR = "19 8, 19 14, 21 14, 21 8, 19 8"  # of the brick: the gap beside the wall is 1 wide
+BLOCKED, CORNERS = "push_square_blocked_door", "push_two_corners"
+
+
+def run_with(number: str, example: str, start: str = "", goal: str = "", brick: str = "") -> utak.Episode:
+    """Return the run of an example with a rule of docs/rules, and another start, goal or brick where one is given."""
+    texts = {name: (EXAMPLES / example / f"{name}.lp").read_text() for name in ("world", "start", "goal")}
+    texts |= {name: text for name, text in (("start", start), ("goal", goal)) if text}
+    if brick:
+        texts["world"] = re.sub(r"(object\(r1, r, ).*\n", rf'\1"POLYGON (({brick}))").\n', texts["world"])
+    return utak.Run(utak.Scenario.from_text(**texts), rules=[documented(number)], max_steps=60).finish()
+
+
+@pytest.mark.parametrize(("number", "example"), [("02", EXCHANGE), ("03", CORNERS)])
+def test_y_is_where_it_shall_be_before_x_is_touched(number: str, example: str) -> None:
+    """Without the rule the task's order has x first."""
+    episode = run_with(number, example)
+    assert episode.verdict == "done"
+    assert max(moves_of(episode, "r1")) < min(moves_of(episode, "g1"))
+
+
+@pytest.mark.parametrize(("number", "start"), [("04", KEPT_BRICK), ("05", "")])
+def test_what_must_not_be_moved_aside_stays_before_the_door(number: str, start: str) -> None:
+    """The brick before the only door is the one that is kept, or too large: it stays, and the rule is named."""
+    episode = run_with(number, BLOCKED, start, brick=AT_THE_DOOR)
+    assert not moves_of(episode, "r1")
+    assert episode.verdict != "done" and documented(number).name in episode.reason
+
+
+def test_what_is_moved_aside_stays_in_its_room() -> None:
+    """The brick before the door is moved aside in its own room, west of the wall."""
+    episode = run_with("06", BLOCKED, brick=AT_THE_DOOR)
+    assert episode.verdict == "done" and moves_of(episode, "r1")
+    assert all(x < 22 for x, _ in middles(episode, "r1"))
+
+
+def test_nothing_big_is_brought_into_the_closet() -> None:
+    """The square of 25 and the brick of 32 squares stay in the hall, and the rule is named."""
+    episode = run_with("07", "push_into_closet")
+    assert all(x < 22 for name in ("g1", "r1") for x, _ in middles(episode, name))
+    assert episode.verdict != "done" and documented("07").name in episode.reason
+
+
+def test_a_goal_of_a_rule_is_attained_in_a_run() -> None:
+    """The square goes to where the brick lies; the brick is brought away, for both shall be in different rooms."""
+    episode = run_with("08", EXCHANGE, TWO_THINGS, "in(x, room(next)).", "25 15, 25 17, 29 17, 29 15, 25 15")
+    assert episode.verdict == "done"
+    assert middles(episode, "g1")[-1][0] > 21 > middles(episode, "r1")[-1][0]
