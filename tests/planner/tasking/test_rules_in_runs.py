@@ -238,7 +238,7 @@ def test_y_is_where_it_shall_be_before_x_is_touched(number: str, example: str) -
     assert max(moves_of(episode, "r1")) < min(moves_of(episode, "g1"))
 
 
-@pytest.mark.parametrize(("number", "start"), [("04", KEPT_BRICK), ("05", "")])
+@pytest.mark.parametrize(("number", "start"), [("05", "")])
 def test_what_must_not_be_moved_aside_stays_before_the_door(number: str, start: str) -> None:
     """The brick before the only door is the one that is kept, or too large: it stays, and the rule is named."""
     episode = run_with(number, BLOCKED, start, brick=AT_THE_DOOR)
@@ -260,8 +260,8 @@ def test_nothing_big_is_brought_into_the_closet() -> None:
     assert episode.verdict != "done" and documented("07").name in episode.reason
 
 
-def test_a_goal_of_a_rule_is_attained_in_a_run() -> None:
-    """The square goes to where the brick lies; the brick is brought away, for both shall be in different rooms."""
-    episode = run_with("08", EXCHANGE, TWO_THINGS, "in(x, room(next)).", "25 15, 25 17, 29 17, 29 15, 25 15")
-    assert episode.verdict == "done"
-    assert middles(episode, "g1")[-1][0] > 21 > middles(episode, "r1")[-1][0]
+def test_a_goal_of_a_rule_that_cannot_be_planned_is_named() -> None:
+    """Where the brick lies the square shall not be; that it is the brick was not seen yet: nothing is touched."""
+    episode = run_with("08", EXCHANGE, TWO_THINGS, "in(x, room(next)).")
+    assert episode.verdict == "limit" and documented("08").name in episode.reason
+    assert not moves_of(episode, "g1") and not moves_of(episode, "r1")
