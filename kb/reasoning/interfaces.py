@@ -135,6 +135,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("claim", 4): (PARAMETER_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("candidate", 2): (CANDIDATE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("has", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("seen", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("settled", 2): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
         ("distance", 2): (CANDIDATE_ARGUMENT, AMOUNT_ARGUMENT),
         ("bound_before", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
@@ -267,7 +268,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
-    {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
+    {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
 )
