@@ -190,6 +190,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("time", 1): (TIME_ARGUMENT,),
         ("begins", 1): (TIME_ARGUMENT,),
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
+        ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
@@ -243,7 +244,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "size", "begins", "done",
+        "connects", "size", "begins", "done", "lay",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
