@@ -16,10 +16,7 @@ def few(cases: Iterable[Any], kept: int | Collection[Any]) -> list[Any]:
         kept = [table[number * len(table) // kept] for number in range(kept)]
     missing = [case for case in kept if case not in table]
     assert not missing, f"not in the table: {missing}"
-    return [_parameters(case, [] if case in kept else [pytest.mark.long]) for case in table]
-
-
-def _parameters(case: Any, marks: Collection[pytest.MarkDecorator]) -> Any:
-    if hasattr(case, "marks"):  # parameters with a name, as of pytest.param
-        return pytest.param(*case.values, marks=[*case.marks, *marks], id=case.id)
-    return pytest.param(*(case if isinstance(case, tuple) else [case]), marks=marks)
+    return [
+        pytest.param(*(case if isinstance(case, tuple) else [case]), marks=[] if case in kept else [pytest.mark.long])
+        for case in table
+    ]
