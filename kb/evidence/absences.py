@@ -173,7 +173,8 @@ class AbsenceExplainer:
         elif name in ("door", "connects", "width") and not instead:
             because = "doors are necks of the floor, by kb/asp/rooms.lp, and no neck was measured so far"
         elif instead:
-            because = "it would have to be measured so; this is believed instead"
+            how = "felt" if name == "colour" else "measured"
+            because = f"it would have to be {how} so; this is believed instead"
         elif f"node({thing})" in self._facts.record.steps[step].fact_set:
             because = f"{thing} is believed to be there, but nothing that was seen, felt or done says this of it"
         else:

@@ -56,6 +56,8 @@ def test_a_felt_colour_rests_on_a_touch_of_that_thing(carried: Questions) -> Non
     facts = carried.beliefs.record.steps[carried.last_step].facts
     (colour,) = [fact for fact in facts if fact.startswith("colour(")]
     (touch,) = carried.why(colour).rests_on
+    because = carried.why_not(colour.replace(",g,", ",r,")).because
+    assert because == "it would have to be felt so; this is believed instead"
     direction = touch.because.removeprefix("colour g was felt in the ")
     felt = carried.beliefs.record.steps[touch.data["impression"]].touch
     assert (
