@@ -28,7 +28,8 @@ QUERY_INTERFACE = "belief"  # the name under which the facts that queries read s
 # Predicates of encodings that users' rules do not reach, and those encodings.
 INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("chosen", 1): ("accommodation",), ("explanation", 4): ("accommodation",), ("choose", 1): ("aims", "routes"),
-    ("aim", 3): ("aims",), ("besides", 2): ("aims",), ("chance", 2): ("aims",), ("last", 1): ("aims", "routes", "transport"),
+    ("aim", 3): ("aims",), ("besides", 2): ("aims",), ("chance", 2): ("aims",),
+    ("last", 1): ("aims", "routes", "transport"),
     ("take", 1): ("boldness",), ("plan", 2): ("boldness",), ("hopes", 1): ("boldness",), ("askew", 1): ("boldness",),
     ("short", 1): ("boldness",), ("aside", 1): ("boldness",), ("route", 4): ("routes",), ("through", 2): ("routes",),
     ("not_through", 1): ("routes",), ("door_price", 2): ("routes",), ("option", 4): ("transport",),

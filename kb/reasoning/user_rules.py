@@ -197,6 +197,12 @@ def world_facts_named(encoding: str, users: Sequence[Path], lines: Container[str
     return frozenset(name for name, _ in read_rules(users).world_facts_named(encoding, lines)) if users else frozenset()
 
 
+def predicates_read(encoding: str, users: Sequence[Path]) -> frozenset[str]:
+    """Return the names of the predicates in the bodies of users' rules that take part in an encoding."""
+    rules = read_rules(users).rules_reaching(encoding) if users else ()
+    return frozenset(atom.name for one in rules for atom in one.body)
+
+
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
     """Return whether any of some users' rules takes part in an encoding; its name is given without `.lp`."""
     # Raises CannotOpenError or BadInputError when the files are not valid.

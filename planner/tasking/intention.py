@@ -21,7 +21,13 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.history import MAX_DISPLACEMENT, DoneErrands
 from planner.tasking.proposal import TASK_ENCODING
-from planner.tasking.rule_effects import doors_at, doors_led_round, rules_alone_leave_no_plan, rules_without_plan
+from planner.tasking.rule_effects import (
+    doors_at,
+    doors_led_round,
+    facts_rules_read,
+    rules_alone_leave_no_plan,
+    rules_without_plan,
+)
 from planner.tasking.search import make_plan
 from planner.tasking.setting import (
     WhereGoalsHold,
@@ -62,6 +68,7 @@ class _Kept:
     turned: Mapping[str, float]  # by how many degrees each thing had been turned when the plan was made
     # The middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans
     led_round: tuple[tuple[XY, ...], ...] = ()
+    read: frozenset[str] = frozenset()  # what users' rules read of things and doors
     number: int = 0  # the errand that is done now
 
     def means_what_is_bound(self, problem: TaskProblem) -> bool:
@@ -242,6 +249,8 @@ class Intention:
         kept = self._kept
         if kept is None or kept.names != tuple(problem.nodes) or kept.places != problem.places_meant({}):
             return None
+        if kept.read != facts_rules_read(situation):
+            return None
         return kept if kept.means_what_is_bound(problem) and self._stands(kept, problem, situation) else None
 
     def _moved_on(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
@@ -323,7 +332,8 @@ class Intention:
         self._meant, plan = dict(chosen), replace(made.plan, meanings=chosen)
         names, places = tuple(problem.nodes), problem.places_meant(self._meant)
         led_round = doors_led_round(made, situation)
-        return _Kept(plan, stage, names, places, spots, bounds, ways, turned, led_round)
+        read = facts_rules_read(situation)
+        return _Kept(plan, stage, names, places, spots, bounds, ways, turned, led_round, read)
 
 
 def with_meanings(situation: Situation, meanings: Mapping[str, str]) -> Situation:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from geometry.kernels.arrays import XY
 from kb.reasoning.encodings import BoundedAnswer
 from kb.reasoning.solver import solve_within
-from kb.reasoning.user_rules import rules_reach, rules_to_blame, world_facts_named
+from kb.reasoning.user_rules import predicates_read, rules_reach, rules_to_blame, world_facts_named
 from kb.tracing.decisions import record_decisions
 from kb.world.model import hundredths
 from kb.world.place_names import SAME_DOOR
@@ -112,6 +112,17 @@ def rules_without_plan(made: MadePlan, situation: Situation) -> tuple[str, ...]:
     if not made.facts or not made.plan.unmet or not rules_reach(TASK_ENCODING.stem, rules):
         return ()
     return rules_to_blame(TASK_ENCODING, rules, made.facts, _leaves_goals)
+
+
+def facts_rules_read(situation: Situation) -> frozenset[str]:
+    """Return what users' rules read of meanings, sizes, shapes, colours and widths: a plan is made anew with that."""
+    named = predicates_read(TASK_ENCODING.stem, situation.rules)
+    read = (named | ({"bound"} if "meaning" in named else set())) & {"bound", "size", "shape", "colour", "width"}
+    if not read:
+        return frozenset()
+    state = TableState({}, situation.model.place_on_view, None)
+    facts = problem_facts(TaskProblem({}, (), {}, {}, {}, state), (), situation, frozenset(), ())
+    return frozenset(fact for fact in facts if fact.partition("(")[0] in read)
 
 
 def rules_alone_leave_no_plan(made: MadePlan, blamed: Sequence[str], situation: Situation) -> bool:

@@ -238,7 +238,7 @@ def test_y_is_where_it_shall_be_before_x_is_touched(number: str, example: str) -
     assert max(moves_of(episode, "r1")) < min(moves_of(episode, "g1"))
 
 
-@pytest.mark.parametrize(("number", "start"), [("05", "")])
+@pytest.mark.parametrize(("number", "start"), [("04", KEPT_BRICK), ("05", "")])
 def test_what_must_not_be_moved_aside_stays_before_the_door(number: str, start: str) -> None:
     """The brick before the only door is the one that is kept, or too large: it stays, and the rule is named."""
     episode = run_with(number, BLOCKED, start, brick=AT_THE_DOOR)
