@@ -36,6 +36,7 @@ def test_clearance_is_exact_near_walls_and_far_from_them():
     assert np.allclose(Screen(free).clearance, oracles.clearance(free), rtol=0, atol=1e-12)
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(st.integers(178, 186), st.tuples(*[st.integers(0, 40)] * 4), st.booleans(), st.integers(0, 2**32 - 1))
 def test_16_bits_are_used_only_where_they_hold_all_clearances(across, margins, round_floor, seed):

@@ -15,6 +15,7 @@ from random_scenes import write_scene
 
 from simulator.cli.main import main
 from simulator.terminal.streams import GuardedStream, StreamError, escape_controls
+from tests.tables import few
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "\x1b[2J\x1b]0;owned\x07\r\x9b31m\u202egnp.exe\u2066\x7f\b\u2028"
@@ -61,7 +62,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("command", "redirect", "code"), CASES)
+@pytest.mark.parametrize(("command", "redirect", "code"), few(CASES, 6))
 def test_a_broken_stream_gives_a_message_of_one_line(command: str, redirect: str, code: int, folder: Path) -> None:
     done = utak(command, folder, redirect, stdin="help\n")
     said = done.stderr.decode()
