@@ -160,6 +160,7 @@ def test_an_object_seen_beyond_a_wall_is_reached_by_the_door() -> None:
     assert body.square[0] > 16
 
 
+@pytest.mark.long
 def test_around_the_corner_is_out_of_sight() -> None:
     rows = ["b" * 34, *["b" * 20 + "." * 13 + "b"] * 14, *["b" + "." * 32 + "b"] * 5]
     rows += ["b..U" + "." * 29 + "b", *["b" + "." * 32 + "b"] * 2, "b" * 34]

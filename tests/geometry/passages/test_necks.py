@@ -94,6 +94,7 @@ def test_routes_avoid_a_passage():
         assert len(ends) == 2
 
 
+@pytest.mark.long
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_doors_do_not_depend_on_the_orientation_of_the_floor_and_cut_it_at_their_mouths(seed):

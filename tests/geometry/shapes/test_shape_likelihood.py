@@ -42,6 +42,7 @@ def image_of(shape: shapely.Polygon) -> np.ndarray:
     return np.pad(cut, PAD).astype(np.int8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("kind", "draw"),
     few([(misfit.SQUARE_CLASS, square), (misfit.BRICK_CLASS, brick), (misfit.DISC_CLASS, disc)], 1),

@@ -195,6 +195,7 @@ def test_walls_stay_walls_within_the_tolerance_of_a_held_object() -> None:
     assert patch.squares() == {(column, row) for column in range(x, x + 4) for row in range(1, 5)}
 
 
+@pytest.mark.long
 def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
     def grasped(aside: int, felt: str | None, angle: int = 0, wall: bool = False) -> str | None:
         """Return what is held after a grasp to the north, if an object lies `aside` squares to the east of it."""

@@ -58,6 +58,7 @@ def test_a_thing_never_touches_its_region_in_truth() -> None:
     assert not covered.is_empty and not covered.intersects(shapely.box(15.5, 6.5, 19.5, 20.5))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("start", "goal", "named", "verdicts"),
     few(
