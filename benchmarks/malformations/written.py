@@ -58,7 +58,7 @@ def _results(path: Path, draw: random.Random) -> None:
         if (seed, noise) not in results.known:
             results.append({"seed": seed, "noise": noise, "steps": 9})
     results.finish()
-    if len(path.read_bytes().splitlines()) != 1 + len(FORM.keys):
+    if path.read_bytes().count(b"\n") != 1 + len(FORM.keys):  # a carriage return within a line ends none
         raise AssertionError("results that are not whole")
 
 
