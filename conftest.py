@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-pytest_plugins = ["utak_pytest", "pytester"]
+pytest_plugins = ["utak.pytest_plugin", "pytester"]
 
 for name in ("same", "random"):
     slow = [HealthCheck.too_slow]

@@ -21,21 +21,21 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from utak.kb.body import Body
+from utak.kb.task.task import Task
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Session
+from utak.simulator.run.trial import scenarios_in
+from utak.simulator.run.warming import warm_all
+from utak.simulator.scenario.expectation import should_fail
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.harness.judging import findings
 from benchmarks.harness.stopwatch import TimedBody, TimedRobot
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.scenes import write
-from kb.body import Body
-from kb.task.task import Task
-from simulator.episode.episode import EpisodeLog
-from simulator.run.robots import make_robot
-from simulator.run.session import Session
-from simulator.run.trial import scenarios_in
-from simulator.run.warming import warm_all
-from simulator.scenario.expectation import should_fail
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
 
 EXAMPLES_FOLDER = Path(__file__).resolve().parent.parent / "examples"
 WARMING_WORLDS = (

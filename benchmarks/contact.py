@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity, box
-
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Motion, Rotate, Translate
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
 
 CONTACT_ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
 CONTACT_HORSESHOE = shapely.Polygon([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)])

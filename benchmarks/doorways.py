@@ -17,9 +17,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.affinity import rotate
-
-from geometry import Passage, Screen
-from geometry.kernels.arrays import Bools, Labels
+from utak.geometry import Passage, Screen
+from utak.geometry.kernels.arrays import Bools, Labels
 
 Outline = tuple[object, ...]
 MAX_FLOOR_SIDE = 26  # squares (a convention)

@@ -29,20 +29,21 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
+from utak.geometry.io.movingai import MapError, parse_map
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.query import QueryEngine
+from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.user_rules import read_tested_rules
+from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.world.physics import Tabletop
+
 from benchmarks.malformations.commands import in_processes, in_this_process
 from benchmarks.malformations.episodes import episodes
 from benchmarks.malformations.imports import imports
 from benchmarks.malformations.mutate import spoil
 from benchmarks.malformations.outcomes import HANG_SECONDS, bound_memory, came_out
 from benchmarks.malformations.written import written
-from geometry.io.movingai import MapError, parse_map
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.reasoning.encodings import KB_ENCODINGS
-from kb.reasoning.query import QueryEngine
-from kb.reasoning.solver import solve
-from kb.reasoning.user_rules import read_tested_rules
-from simulator.scenario.scenario import Scenario, read_scenario
-from simulator.world.physics import Tabletop
 
 GOOD_WORLD = """\
 % A room with two things.

@@ -18,11 +18,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.cspace.plan_motion import MotionPlan, plan_motion
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Pose
+from utak.geometry.cspace.plan_motion import MotionPlan, plan_motion
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Pose
 
 
 class MovingScene(NamedTuple):

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from simulator.episode.output_files import is_svg, write_whole
+from utak.simulator.episode.output_files import is_svg, write_whole
 
 ZONES = ((4, 1), (8, 2), (16, 4))
 SCALE = 8  # pixels a square

@@ -22,18 +22,18 @@ PACKAGES = ("geometry", "kb", "planner", "simulator", "utak", "benchmarks")
 MADE = "Made from the code by `python docs/build_reference.py`; do not edit.\n"
 # What a program that uses the geometry alone calls, by module, in reading order.
 GEOMETRY = {
-    "geometry.screen": ["Screen"],
-    "geometry.skeleton.pathgraph_arrays": ["PathgraphArrays"],
-    "geometry.routes.route": ["Route"],
-    "geometry.passages.necks": ["Passage"],
-    "geometry.cspace.plan_motion": ["plan_motion", "MotionPlan"],
-    "geometry.cspace.solver": ["Inside"],
-    "geometry.motion.se2": ["Pose", "Translate", "Rotate"],
-    "geometry.motion.first_contact": ["ContactBody", "Obstacles"],
-    "geometry.manipulation.plan_carrying": ["plan_carrying", "CarryingPlan"],
-    "geometry.raster.rasterize": ["squares"],
-    "geometry.shapes.fit": ["fit_shapes", "Fit"],
-    "geometry.io.movingai": ["parse_map", "read_map", "read_trips"],
+    "utak.geometry.screen": ["Screen"],
+    "utak.geometry.skeleton.pathgraph_arrays": ["PathgraphArrays"],
+    "utak.geometry.routes.route": ["Route"],
+    "utak.geometry.passages.necks": ["Passage"],
+    "utak.geometry.cspace.plan_motion": ["plan_motion", "MotionPlan"],
+    "utak.geometry.cspace.solver": ["Inside"],
+    "utak.geometry.motion.se2": ["Pose", "Translate", "Rotate"],
+    "utak.geometry.motion.first_contact": ["ContactBody", "Obstacles"],
+    "utak.geometry.manipulation.plan_carrying": ["plan_carrying", "CarryingPlan"],
+    "utak.geometry.raster.rasterize": ["squares"],
+    "utak.geometry.shapes.fit": ["fit_shapes", "Fit"],
+    "utak.geometry.io.movingai": ["parse_map", "read_map", "read_trips"],
 }
 # What a program that uses Utak from Python calls, in reading order.
 PYTHON = {
@@ -43,7 +43,7 @@ PYTHON = {
     "utak.beliefs": ["World", "Answer"],
     "utak.explaining": ["ReasonTree"],
     "utak.mind": ["Mind", "Verdict"],
-    "kb.body": ["Impression", "Move", "Push", "Turn", "Grasp", "Release"],
+    "utak.kb.body": ["Impression", "Move", "Push", "Turn", "Grasp", "Release"],
     "utak.errors": ["RunNotRepeatedError"],
     "utak.gym.environment": ["TabletopEnv"],
     "utak.gym.vector": ["TabletopVectorEnv"],
@@ -83,7 +83,7 @@ def cell(text: str) -> str:
 
 def commands_page() -> str:
     """Return the page with every command of `utak` and its options."""
-    from simulator.cli.parsing import EXIT_CODES, build_parser
+    from utak.simulator.cli.parsing import EXIT_CODES, build_parser
 
     parts = next(action for action in build_parser()._actions if isinstance(action, argparse._SubParsersAction))
     helps = {choice.dest: choice.help for choice in parts._choices_actions}

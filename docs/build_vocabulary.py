@@ -38,7 +38,7 @@ class Entry(NamedTuple):
 def encodings() -> list[Path]:
     """Return all encodings, each a file or a folder of files; the world model's own vocabulary first."""
     sys.path.insert(0, str(ROOT))
-    from kb.reasoning.encodings import all_encodings
+    from utak.kb.reasoning.encodings import all_encodings
 
     return sorted(all_encodings(), key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
 
@@ -102,8 +102,8 @@ def section(path: Path) -> str:
 def files_section() -> str:
     """Return the part about the declared vocabulary of the kinds of fact files."""
     sys.path.insert(0, str(ROOT))
-    from kb.language.vocabulary import EXPECTATION_VOCABULARY, GOAL_VOCABULARY, START_VOCABULARY, WORLD_VOCABULARY
-    from simulator.scenario.trialfile import TRIAL_VOCABULARY
+    from utak.kb.language.vocabulary import EXPECTATION_VOCABULARY, GOAL_VOCABULARY, START_VOCABULARY, WORLD_VOCABULARY
+    from utak.simulator.scenario.trialfile import TRIAL_VOCABULARY
 
     parts: Mapping[str, Mapping[str, Sequence[object]]] = {
         "world.lp": WORLD_VOCABULARY,
@@ -123,7 +123,7 @@ def files_section() -> str:
 def questions_section() -> str:
     """Return the part about which predicates of the world model are open."""
     sys.path.insert(0, str(ROOT))
-    from kb.language.vocabulary import BELIEF_PREDICATES, Openness
+    from utak.kb.language.vocabulary import BELIEF_PREDICATES, Openness
 
     words = {
         Openness.NEVER: "nothing: it is known completely",
@@ -144,7 +144,7 @@ def questions_section() -> str:
 def rules_section() -> str:
     """Return the part about the predicates that rules of users may derive."""
     sys.path.insert(0, str(ROOT))
-    from kb.reasoning.interfaces import READ_ONLY_PREDICATES, USER_RULE_INTERFACES
+    from utak.kb.reasoning.interfaces import READ_ONLY_PREDICATES, USER_RULE_INTERFACES
 
     lines = ["## What rules of users may derive", ""]
     lines += [

@@ -25,10 +25,10 @@ Public names: ``Screen`` and ``Route`` (routes), ``Passage``; ``plan_motion``, `
 ``Translate``, ``Rotate``.
 """
 
-from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
-from geometry.motion.se2 import Pose, Rotate, Translate
-from geometry.passages.necks import Passage
-from geometry.routes.route import Route
-from geometry.screen import Screen
+from utak.geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
+from utak.geometry.motion.se2 import Pose, Rotate, Translate
+from utak.geometry.passages.necks import Passage
+from utak.geometry.routes.route import Route
+from utak.geometry.screen import Screen
 
 __all__ = ["Inside", "MotionPlan", "Passage", "Pose", "Rotate", "Route", "Screen", "Translate", "plan_motion"]

@@ -11,24 +11,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-from geometry.homotopy.portals import word_of_line
-from geometry.kernels.arrays import Bools, Labels
-from geometry.passages.narrow_stretches import narrow_squares
-from geometry.passages.necks import DOOR_RATIO, Passage, find_passages
-from geometry.passages.partition import find_parts
-from geometry.passages.walls import Walls, find_walls
-from geometry.raster.distance_transform import smallest_distance_type
-from geometry.routes.layer import Layer, build_layer, find_pathgraph, least_squared_clearance, new_state
-from geometry.routes.queries import LayerQueries
-from geometry.routes.route import Route
-from geometry.routes.tighten import word_of_crossings
-from geometry.skeleton.buffers import Tenant, take_buffers
-from geometry.skeleton.chains import Chains, find_chains
-from geometry.skeleton.graph import SkeletonGraph, contract
-from geometry.skeleton.pathgraph_arrays import PathgraphArrays, build_pathgraph_arrays
-from geometry.skeleton.skeleton import States, Words
-from geometry.skeleton.sweep import survey
+from utak.geometry.homotopy.portals import word_of_line
+from utak.geometry.kernels.arrays import Bools, Labels
+from utak.geometry.passages.narrow_stretches import narrow_squares
+from utak.geometry.passages.necks import DOOR_RATIO, Passage, find_passages
+from utak.geometry.passages.partition import find_parts
+from utak.geometry.passages.walls import Walls, find_walls
+from utak.geometry.raster.distance_transform import smallest_distance_type
+from utak.geometry.routes.layer import Layer, build_layer, find_pathgraph, least_squared_clearance, new_state
+from utak.geometry.routes.queries import LayerQueries
+from utak.geometry.routes.route import Route
+from utak.geometry.routes.tighten import word_of_crossings
+from utak.geometry.skeleton.buffers import Tenant, take_buffers
+from utak.geometry.skeleton.chains import Chains, find_chains
+from utak.geometry.skeleton.graph import SkeletonGraph, contract
+from utak.geometry.skeleton.pathgraph_arrays import PathgraphArrays, build_pathgraph_arrays
+from utak.geometry.skeleton.skeleton import States, Words
+from utak.geometry.skeleton.sweep import survey
 
 if TYPE_CHECKING:
     import networkx
@@ -108,7 +107,7 @@ class Screen:
         Thin, with as many edge-connected components and as many holes as the free squares. It follows the ridges of
         the clearance from each of its saddles up to the maxima.
         """
-        from geometry.skeleton.thinning import thin_skeleton
+        from utak.geometry.skeleton.thinning import thin_skeleton
 
         return thin_skeleton(self._square, self._skeleton_at(1)[0])
 
@@ -153,7 +152,7 @@ class Screen:
         ValueError
             When the radius is negative or no finite number.
         """
-        from geometry.skeleton.networkx_export import networkx_graph
+        from utak.geometry.skeleton.networkx_export import networkx_graph
 
         return networkx_graph(self._new_arrays(radius))
 

@@ -13,21 +13,21 @@ State lies in three places: the localisation tracker (`Tracker`), the touches (`
 from dataclasses import replace
 from pathlib import Path
 
-from kb.body import Command, Grasp, Impression
-from kb.localisation.field_account import Accommodation
-from kb.localisation.state import TrackerState
-from kb.localisation.tracker import Tracker
-from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
-from kb.mapping.occupancy import OPEN, MapView
-from kb.objects.held_object import held_or_moved
-from kb.objects.shape_fit import ShapeMeasurer
-from kb.objects.touches import Touches
-from kb.perception.interpretation import interpret_regions
-from kb.perception.regions import map_regions
-from kb.perception.seams import PartedMap, part_mixed_regions
-from kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
-from kb.world.object_names import ObjectNames
-from kb.world.objects import (
+from utak.kb.body import Command, Grasp, Impression
+from utak.kb.localisation.field_account import Accommodation
+from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
+from utak.kb.mapping.occupancy import OPEN, MapView
+from utak.kb.objects.held_object import held_or_moved
+from utak.kb.objects.shape_fit import ShapeMeasurer
+from utak.kb.objects.touches import Touches
+from utak.kb.perception.interpretation import interpret_regions
+from utak.kb.perception.regions import map_regions
+from utak.kb.perception.seams import PartedMap, part_mixed_regions
+from utak.kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
+from utak.kb.world.object_names import ObjectNames
+from utak.kb.world.objects import (
     MapRegions,
     classified,
     grasped,

@@ -5,12 +5,12 @@ The fourth answer, that nothing can be done, is planner.carrying.infeasibility.I
 
 from dataclasses import dataclass
 
-from geometry.kernels.arrays import XY
-from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.body import Command, Push, Turn
-from kb.world.model import WorldModel
-from planner.screen.projection import SquareIndices
-from planner.sights.frontiers import Viewpoint
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.kb.body import Command, Push, Turn
+from utak.kb.world.model import WorldModel
+from utak.planner.screen.projection import SquareIndices
+from utak.planner.sights.frontiers import Viewpoint
 
 
 @dataclass(frozen=True)

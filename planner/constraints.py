@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.raster.rasterize import covered_areas
-from kb.language.terms import Fact, Text
-from kb.language.wkt import parse_wkt
-from kb.perception.frame import Frame
-from kb.task.task import Task
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.raster.rasterize import covered_areas
+from utak.kb.language.terms import Fact, Text
+from utak.kb.language.wkt import parse_wkt
+from utak.kb.perception.frame import Frame
+from utak.kb.task.task import Task
 
 AVOID = "avoid"
 CARRY_NOTHING_THROUGH = "carry_nothing_through"

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.body import Body, Command, Impression, Release
-from kb.knowledge import Knowledge
-from kb.localisation.field_account import Accommodation
-from kb.reasoning.user_rules import rules_never_applied
-from kb.task.task import Task
-from kb.tracing.decisions import SolverCall, record_applied_rules, record_decisions
-from kb.world.facts import Places, belief
-from planner.agenda.decider import Decider
-from planner.decision import Decision, TaskVerdict
-from planner.journal import Journal
+from utak.kb.body import Body, Command, Impression, Release
+from utak.kb.knowledge import Knowledge
+from utak.kb.localisation.field_account import Accommodation
+from utak.kb.reasoning.user_rules import rules_never_applied
+from utak.kb.task.task import Task
+from utak.kb.tracing.decisions import SolverCall, record_applied_rules, record_decisions
+from utak.kb.world.facts import Places, belief
+from utak.planner.agenda.decider import Decider
+from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.journal import Journal
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class StepReport(NamedTuple):
 
     command: Command | None  # the command that was given; None on waking
     impression: Impression  # what the body returned after it
-    belief: dict[str, Any]  # what is believed since, ready for JSON, as `kb.world.facts.belief` returns it.
+    belief: dict[str, Any]  # what is believed since, ready for JSON, as `utak.kb.world.facts.belief` returns it.
     why: str  # the reason of the command, in words
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from kb.body import Command
+from utak.kb.body import Command
 
 
 class TaskVerdict(StrEnum):

@@ -6,9 +6,9 @@ What stood in an earlier step already is written as a reference to it, so that e
 from collections.abc import Sequence
 from typing import Any
 
-from geometry.kernels.arrays import XY
-from kb.localisation.state import TrackerState
-from kb.tracing.decisions import SolverCall
+from utak.geometry.kernels.arrays import XY
+from utak.kb.localisation.state import TrackerState
+from utak.kb.tracing.decisions import SolverCall
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
 ROUTES_ENCODING = "routes"  # the encoding whose candidates are routes

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
-from kb.language.terms import Fact
-from planner.situation import Situation
+from utak.kb.language.terms import Fact
+from utak.planner.situation import Situation
 
 Answer = TypeVar("Answer")
 

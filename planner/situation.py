@@ -8,19 +8,18 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.raster.rasterize import squares
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT
-from kb.mapping.patch import Patch
-from kb.task.task import Task
-from kb.world.corners import Corner
-from kb.world.facts import Places, facts_for_rules
-from kb.world.model import Node, WorldModel
-from kb.world.place_names import SAME_DOOR
-from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
-from planner.constraints import (
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.raster.rasterize import squares
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.mapping.patch import Patch
+from utak.kb.task.task import Task
+from utak.kb.world.corners import Corner
+from utak.kb.world.facts import Places, facts_for_rules
+from utak.kb.world.model import Node, WorldModel
+from utak.kb.world.place_names import SAME_DOOR
+from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
+from utak.planner.constraints import (
     CARRY_NOTHING_THROUGH,
     MAX_KEPT_SPREAD,
     OBJECT_DISTANCE,
@@ -29,9 +28,9 @@ from planner.constraints import (
     region_of,
     region_squares,
 )
-from planner.screen.projection import CostMaps, dilate
-from planner.sights.frontiers import Viewpoint, viewpoint_of
-from planner.stages import constraints
+from utak.planner.screen.projection import CostMaps, dilate
+from utak.planner.sights.frontiers import Viewpoint, viewpoint_of
+from utak.planner.stages import constraints
 
 NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 

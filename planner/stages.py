@@ -7,9 +7,9 @@ as one stage.
 
 from dataclasses import dataclass, replace
 
-from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import CONSTRAINT_GOALS, ROBOT, TRACK_GOALS
-from kb.task.task import WRAPPING_GOALS, Task
+from utak.kb.language.terms import Fact, Number, Symbol, Term
+from utak.kb.language.vocabulary import CONSTRAINT_GOALS, ROBOT, TRACK_GOALS
+from utak.kb.task.task import WRAPPING_GOALS, Task
 
 DOOR_GOALS = ("in", "through")  # goals that rest on a door of the room in which their subject was at first
 ORIGIN_GOALS = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first

@@ -16,7 +16,7 @@ from pathlib import Path
 
 HOUSE = ("geometry", "kb", "planner", "simulator", "utak")
 MEASURED = (*HOUSE, "benchmarks")
-PATCHED_PACKAGES = (*MEASURED, "utak_command")  # in which tests patch nothing
+PATCHED_PACKAGES = MEASURED  # in which tests patch nothing
 MAY_IMPORT = {
     "geometry": set[str](),
     "kb": {"geometry"},
@@ -34,6 +34,7 @@ MAY_USE = {
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
 # Libraries of extras, each met in one place alone and imported when it is used.
 OPTIONAL_IN = {
+    "pytest": "utak/pytest_plugin.py",
     "PIL": "simulator/replay/gif.py",
     "distributed": "simulator/sweep/executors/cluster.py",
     "gymnasium": "utak/gym",
@@ -46,6 +47,7 @@ CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are
 FRONTS_WITH_CODE: dict[str, tuple[type[ast.stmt], ...]] = {
     "geometry/__init__.py": (ast.ImportFrom, ast.Assign),  # public names
     "utak/__init__.py": (
+        ast.Import,
         ast.ImportFrom,
         ast.Assign,
         ast.If,
@@ -53,6 +55,7 @@ FRONTS_WITH_CODE: dict[str, tuple[type[ast.stmt], ...]] = {
     ),  # public names, loaded when they are used
     "utak/gym/__init__.py": (ast.ImportFrom,),  # importing it makes the environment known to Gymnasium
 }
+LAUNCHER = "utak.launcher"  # the one module of the face that all may import: it starts our processes
 FACE = "utak"  # its classes bear the names of what they show: utak.Scenario stands for a scenario
 MAX_MODULES = 12  # in a folder: what a reader keeps in mind at once
 MAX_LINES = 400  # of a module, its docstrings left out
@@ -84,13 +87,20 @@ def short(path: Path, root: Path) -> str:
     return path.relative_to(root).as_posix()
 
 
-def imports(path: Path) -> Iterator[tuple[str, str]]:
+def in_house(dotted: str) -> str:
+    """Return a module's name as its place in the checkout has it: `kb.task` for `utak.kb.task`."""
+    inner = dotted.removeprefix(f"{FACE}.")
+    return inner if inner.split(".")[0] in set(HOUSE) - {FACE} else dotted
+
+
+def imports(path: Path, as_written: bool = False) -> Iterator[tuple[str, str]]:
     """Yield (module, name) for each import at whatever depth; the name is "" for `import module`."""
+    name_of = str if as_written else in_house
     for node in ast.walk(tree_of(path)):
         if isinstance(node, ast.Import):
-            yield from ((alias.name, "") for alias in node.names)
+            yield from ((name_of(alias.name), "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            yield from ((node.module, alias.name) for alias in node.names)
+            yield from ((name_of(node.module), alias.name) for alias in node.names)
 
 
 def package_imports(root: Path) -> Iterator[str]:
@@ -99,11 +109,19 @@ def package_imports(root: Path) -> Iterator[str]:
         own = short(path, root).split("/")[0]
         below = MAY_IMPORT[own] | {own}
         for module, _ in imports(path):
-            if module.split(".")[0] in {*HOUSE, "benchmarks", "tests", "utak"} - below:
+            if module.split(".")[0] in {*HOUSE, "benchmarks", "tests"} - below and module != LAUNCHER:
                 yield f"{short(path, root)} imports {module}"
             ours = module.split(".")[0] in HOUSE and not module.startswith(("geometry", PURE_WORLD.replace("/", ".")))
             if ours and short(path, root).startswith(PURE_WORLD):
                 yield f"{short(path, root)} imports {module}: the simulated world knows geometry alone"
+
+
+def imports_from_the_top(root: Path) -> Iterator[str]:
+    """Our packages are imported as parts of `utak`, as they are where Utak is installed."""
+    for path in modules(root, (*MEASURED, "tests")):
+        for module, _ in imports(path, as_written=True):
+            if module.split(".")[0] in set(HOUSE) - {FACE}:
+                yield f"{short(path, root)} imports {module}, not {FACE}.{module}"
 
 
 def relative_imports(root: Path) -> Iterator[str]:
@@ -118,7 +136,7 @@ def others_used(root: Path) -> Iterator[str]:
     for path in modules(root):
         name = short(path, root)
         for library in {module.split(".")[0] for module, _ in imports(path)}:
-            if library in {*HOUSE, "utak_command"} | set(sys.stdlib_module_names):
+            if library in set(HOUSE) | set(sys.stdlib_module_names):
                 continue
             if library in OPTIONAL_IN:
                 if not name.startswith(OPTIONAL_IN[library]):
@@ -196,7 +214,8 @@ def names_with_two_meanings(root: Path) -> Iterator[str]:
         places: dict[str, list[str]] = defaultdict(list)
         for path in modules(root, packages):
             for name in public_values(path):
-                if len(name) > 1:  # a type variable stands for nothing of the project's
+                # A type variable stands for nothing of the project's, and Python gives the other name its meaning.
+                if len(name) > 1 and name != "TYPE_CHECKING":
                     places[name].append(short(path, root))
         for name, where in sorted(places.items()):
             if len(where) > 1:
@@ -401,7 +420,7 @@ def _bound_names(tree: ast.Module) -> dict[str, str]:
             elif isinstance(value, ast.Name | ast.Attribute):
                 first, dot, rest = ast.unparse(value).partition(".")
                 named.setdefault(node.targets[0].id, named.get(first, "") + dot + rest)
-    return {name: whole for name, whole in named.items() if whole.split(".")[0] in PATCHED_PACKAGES}
+    return {name: whole for name, whole in named.items() if in_house(whole).split(".")[0] in PATCHED_PACKAGES}
 
 
 def _is_ours(root: Path, target: ast.expr, named: dict[str, str]) -> bool:
@@ -418,19 +437,21 @@ def _is_ours(root: Path, target: ast.expr, named: dict[str, str]) -> bool:
 
 def _is_module_or_class(root: Path, dotted: str) -> bool:
     """Return whether a dotted name is that of a module or package of ours, or of a class in one."""
-    module, _, last = dotted.rpartition(".")
+    module, _, last = in_house(dotted).rpartition(".")
     written_as_class = re.fullmatch(r"[A-Z]\w*[a-z]\w*", last)
     return _is_module(root, dotted) or (written_as_class is not None and _is_module(root, module))
 
 
 def _is_module(root: Path, dotted: str) -> bool:
     """Return whether a dotted name is that of a module or package of ours."""
+    dotted = in_house(dotted)
     place = root / dotted.replace(".", "/")
     return dotted.split(".")[0] in PATCHED_PACKAGES and (place.is_dir() or place.with_suffix(".py").exists())
 
 
 LAWS = (
     package_imports,
+    imports_from_the_top,
     relative_imports,
     others_used,
     circles,

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from kb.body import Body, Command
-from planner.cycle import StepReport, Verdict
+from utak.kb.body import Body, Command
+from utak.planner.cycle import StepReport, Verdict
 
 
 class Scripted:

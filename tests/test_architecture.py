@@ -16,6 +16,7 @@ Law = Callable[[Path], Iterator[str]]
 # For each law the files of a small house in which it is broken, and what the law must name.
 PLANTED: dict[str, tuple[dict[str, str], str]] = {
     "package_imports": ({"kb/task.py": "def f():\n    from simulator.world import table\n"}, "simulator.world"),
+    "imports_from_the_top": ({"kb/task.py": "from kb.other import f\n"}, "not utak.kb.other"),
     "relative_imports": ({"kb/task.py": "from . import other\n"}, "kb/task.py"),
     "others_used": ({"planner/cycle.py": "import clingo\n"}, "clingo"),
     "circles": ({"kb/a/one.py": "from kb.b.two import x\n", "kb/b/two.py": "from kb.a.one import y\n"}, "kb.a"),
@@ -44,7 +45,7 @@ PLANTED: dict[str, tuple[dict[str, str], str]] = {
     ),
 }
 
-LAUNCHER = "utak_command"  # not written out below, since this module, too, is searched for programs that patch
+LAUNCHER = "utak.launcher"  # not written out below, since this module, too, is searched for programs that patch
 # Ways to put something in the place of what a module of a small house defines, and what the law must name.
 PATCHES = {
     "from kb import a\ndef test(monkeypatch):\n    monkeypatch.setattr(a, 'f', 1)\n": "a",
@@ -125,7 +126,7 @@ def test_the_face_for_python_keeps_to_itself(name: str, program: str, tmp_path: 
 
 def planted_tests(root: Path, program: str) -> list[str]:
     """Return what patches globals in a small house whose only test is a program."""
-    for name in ("kb/a.py", "kb/task/room.py", "benchmarks/run.py", "utak_command.py", "tests/test_a.py"):
+    for name in ("kb/a.py", "kb/task/room.py", "benchmarks/run.py", "utak/launcher.py", "tests/test_a.py"):
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(program if name.startswith("tests/") else "")
     return list(laws.patched_globals(root))
@@ -160,14 +161,14 @@ def run(program: str, *arguments: str) -> str:
 
 def test_whatever_is_imported_waits_for_neither_numba_nor_networkx() -> None:
     names = [
-        laws.short(path, ROOT)[:-3].replace("/", ".").removesuffix(".__init__")
+        "utak." + laws.short(path, ROOT)[:-3].replace("/", ".").removesuffix(".__init__")
         for path in laws.modules(ROOT, ("geometry", "kb", "planner"))
         if laws.short(path, ROOT) != laws.NUMBA_IN[1]  # which the first call of a kernel imports
     ]
     program = (
         "import importlib\n"
         "for name in sys.argv[2:]: importlib.import_module(name)\n"
-        "print([n for n in ('numba', 'networkx', 'scipy', 'matplotlib', 'simulator') if n in sys.modules])\n"
+        "print([n for n in ('numba', 'networkx', 'scipy', 'matplotlib', 'utak.simulator') if n in sys.modules])\n"
     )
     assert run(program, *names) == "[]"
     assert run("import networkx\n" + program) == "['networkx']"  # the program sees what is loaded
@@ -175,14 +176,17 @@ def test_whatever_is_imported_waits_for_neither_numba_nor_networkx() -> None:
 
 def test_nobody_imports_the_face_for_python_and_it_starts_light() -> None:
     loaded = ast.literal_eval(run("import utak; print(sorted(sys.modules))"))
-    assert {"utak"} == {name for name in loaded if name.split(".")[0] in laws.HOUSE}
+    assert {"utak"} == {name for name in loaded if laws.in_house(name).split(".")[0] in laws.HOUSE}
     assert not {"numpy", "shapely", "clingo", "numba", "networkx", "typing", "gymnasium"} & set(loaded)
-    names = ("simulator.cli.main", "simulator.run.session", "planner.cycle", "kb.knowledge", "geometry")
-    program = "import importlib\nfor name in sys.argv[2:]: importlib.import_module(name)\nprint('utak' in sys.modules)"
-    assert run(program, *names) == "False"
+    names = [
+        f"utak.{name}" for name in ("simulator.cli.main", "simulator.run.session", "planner.cycle", "kb.knowledge")
+    ]
+    program = "import importlib\nfor name in sys.argv[2:]: importlib.import_module(name)\nprint(sorted(sys.modules))"
+    face = {f"utak.{path.stem}" for path in (ROOT / "utak").glob("*.py")} - {laws.LAUNCHER}
+    assert not face & set(ast.literal_eval(run(program, *names)))
 
 
 def test_the_command_line_starts_light() -> None:
-    loaded = ast.literal_eval(run("import simulator.cli.main; print(sorted(sys.modules))"))
+    loaded = ast.literal_eval(run("import utak.simulator.cli.main; print(sorted(sys.modules))"))
     assert not {"numpy", "shapely", "clingo", "numba", "networkx"} & set(loaded)
-    assert "simulator.cli.main" in loaded
+    assert "utak.simulator.cli.main" in loaded

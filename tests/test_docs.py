@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from utak.simulator.cli.main import main
 
-from simulator.cli.main import main
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent

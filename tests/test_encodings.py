@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.encodings import encoding_text
+from utak.kb.reasoning.solver import solve
 
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.encodings import encoding_text
-from kb.reasoning.solver import solve
 from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
 from tests.tables import few
 

@@ -14,9 +14,9 @@ from itertools import product
 from pathlib import Path
 
 import pytest
+from utak.simulator.cli.main import main
+from utak.simulator.scenario.scenario import read_any_world
 
-from simulator.cli.main import main
-from simulator.scenario.scenario import read_any_world
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -107,7 +107,7 @@ HASH_SEEDS = [("push_square_next_room", "1"), *product(["go_northeast_askew", "g
 @pytest.mark.parametrize(("name", "seed"), few(HASH_SEEDS, 1))
 def test_the_same_seed_gives_the_same_bytes(name: str, seed: str, tmp_path: Path, episode) -> None:  # type: ignore[no-untyped-def]
     log = tmp_path / "episode.jsonl"
-    command = [sys.executable, "-m", "simulator.cli", "run", str(ROOT / "examples" / name), "--log", str(log)]
+    command = [sys.executable, "-m", "utak.simulator.cli", "run", str(ROOT / "examples" / name), "--log", str(log)]
     subprocess.run(command, cwd=ROOT, env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, check=False)
     assert log.read_bytes() == episode(name).read_bytes()
 

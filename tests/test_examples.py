@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-
-from simulator.scenario.expectation import Snapshot, should_fail, unmet
-from simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.expectation import Snapshot, should_fail, unmet
+from utak.simulator.scenario.scenario import read_scenario
 
 EXAMPLES = sorted(path.parent for path in (Path(__file__).resolve().parent.parent / "examples").glob("*/goal.lp"))
 

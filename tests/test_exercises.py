@@ -5,10 +5,10 @@ import shutil
 from pathlib import Path
 
 import pytest
+from utak.simulator.cli.main import main
+from utak.simulator.run.trial import run_trial
+from utak.simulator.scenario.untrusted import SCENARIO_FILES
 
-from simulator.cli.main import main
-from simulator.run.trial import run_trial
-from simulator.scenario.untrusted import SCENARIO_FILES
 from tests.tables import few
 
 EXERCISES = Path(__file__).resolve().parent.parent / "docs" / "exercises"

@@ -6,9 +6,9 @@ from typing import Any
 
 import clingo
 import pytest
+from utak.kb.reasoning.encodings import all_encodings, encoding_text
+from utak.simulator.cli.main import main
 
-from kb.reasoning.encodings import all_encodings, encoding_text
-from simulator.cli.main import main
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent

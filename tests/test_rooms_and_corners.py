@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from utak.simulator.cli.main import main
 
-from simulator.cli.main import main
 from tests.tables import few
 
 DOOR_IN_THE_CORNER = """\

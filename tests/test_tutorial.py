@@ -7,8 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-
-from simulator.cli.main import main
+from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parent.parent
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text()

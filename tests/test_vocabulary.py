@@ -5,12 +5,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-from kb.language.reader import parse_facts
-from kb.language.source_text import source_from_bytes
-from kb.reasoning.query import QUERY_PREDICATES
-from kb.world.corners import corners
-from kb.world.facts import Places, model_facts
-from kb.world.rooms import rooms_of
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import source_from_bytes
+from utak.kb.reasoning.query import QUERY_PREDICATES
+from utak.kb.world.corners import corners
+from utak.kb.world.facts import Places, model_facts
+from utak.kb.world.rooms import rooms_of
+
 from tests.kb.drawings import known_model
 
 ROOT = Path(__file__).resolve().parent.parent

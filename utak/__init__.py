@@ -19,19 +19,26 @@ errors      what is raised besides ValueError and TypeError
 explaining  why something is believed or was done
 markup      tables and captions for notebooks, as HTML
 gym         TABLETOP as a Gymnasium environment (extra `gym`)
+launcher       the starting point of the command and of its processes
+pytest_plugin  scenario folders as tests of pytest
 """
 
+import os
 from importlib import import_module
+
+# Installed, `geometry`, `kb`, `planner` and `simulator` lie within this package. In a checkout they lie beside it.
+if not os.path.isdir(os.path.join(__path__[0], "kb")):  # noqa: PTH112, PTH118
+    __path__.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))  # noqa: PTH100, PTH120
 
 TYPE_CHECKING = False  # not imported from typing, which takes most of the time of `import utak`
 if TYPE_CHECKING:
-    from kb.body import Grasp, Impression, Move, Push, Release, Turn
-    from kb.language.diagnostics import BadInputError, CannotOpenError
-    from kb.reasoning.query import QueryLimitError
     from utak.beliefs import Answer, World
     from utak.episode import Episode, Step
     from utak.errors import RunNotRepeatedError
     from utak.explaining import ReasonTree
+    from utak.kb.body import Grasp, Impression, Move, Push, Release, Turn
+    from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+    from utak.kb.reasoning.query import QueryLimitError
     from utak.mind import Mind, Verdict
     from utak.run import Plan, Run
     from utak.scenario import Scenario
@@ -60,9 +67,9 @@ __all__ = [
 ]
 
 _MODULES = {
-    **dict.fromkeys(("Grasp", "Impression", "Move", "Push", "Release", "Turn"), "kb.body"),
-    **dict.fromkeys(("BadInputError", "CannotOpenError"), "kb.language.diagnostics"),
-    "QueryLimitError": "kb.reasoning.query",
+    **dict.fromkeys(("Grasp", "Impression", "Move", "Push", "Release", "Turn"), "utak.kb.body"),
+    **dict.fromkeys(("BadInputError", "CannotOpenError"), "utak.kb.language.diagnostics"),
+    "QueryLimitError": "utak.kb.reasoning.query",
     **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
     **dict.fromkeys(("Episode", "Step"), "utak.episode"),
     "ReasonTree": "utak.explaining",
@@ -79,15 +86,7 @@ if not TYPE_CHECKING:  # so that type checkers know the public names and no othe
         """Return a public name; its module is imported when the name is first used."""
         if name not in _MODULES:
             raise AttributeError(f"module 'utak' has no attribute {name!r}")
-        try:
-            value = getattr(import_module(_MODULES[name]), name)
-        except ImportError as error:
-            foreign = _foreign_package()
-            if foreign:
-                raise ImportError(
-                    f"utak needs its own package of this name, and Python finds {foreign} first"
-                ) from error
-            raise
+        value = getattr(import_module(_MODULES[name]), name)
         globals()[name] = value
         return value
 
@@ -95,21 +94,3 @@ if not TYPE_CHECKING:  # so that type checkers know the public names and no othe
 def __dir__() -> list[str]:
     """Return the public names."""
     return sorted({*globals(), *__all__})
-
-
-def _foreign_package() -> str:
-    """Return the file of a package that is not Utak's, although it bears the name of one of Utak's; "" without any."""
-    from importlib.util import find_spec
-    from pathlib import Path
-
-    home = Path(__file__).resolve().parent.parent
-    for name in ("geometry", "kb", "planner", "simulator"):
-        spec = find_spec(name)
-        places = (
-            [spec.origin]
-            if spec is not None and spec.origin
-            else list(getattr(spec, "submodule_search_locations", None) or ())
-        )
-        if places and not Path(places[0]).resolve().is_relative_to(home / name):
-            return places[0]
-    return ""

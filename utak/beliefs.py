@@ -8,9 +8,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from kb.reasoning.query import QueryEngine
-from simulator.replay.drawing import belief_svg
+from utak.kb.reasoning.query import QueryEngine
 from utak.markup import framed, table
+from utak.simulator.replay.drawing import belief_svg
 
 MAX_ROWS_SHOWN = 100  # rows of an answer that a notebook shows; a convention
 
@@ -53,7 +53,7 @@ class Answer:
 
     def __str__(self) -> str:
         """Return a table of the bindings, or the kind of the answer in words."""
-        from kb.reasoning.query import QueryAnswer
+        from utak.kb.reasoning.query import QueryAnswer
 
         return str(QueryAnswer(self.kind, self.variables, self.rows, self.more))
 

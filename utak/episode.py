@@ -6,16 +6,16 @@ from html import escape
 from pathlib import Path
 from typing import Any, overload
 
-from kb.body import Impression
-from simulator.episode.episode import Episode as EpisodeRecord
-from simulator.episode.episode import encode, read_episode
-from simulator.episode.output_files import is_episode, write_whole
-from simulator.explaining.questions import Questions
-from simulator.replay.drawing import step_svg
-from simulator.terminal.action_in_words import describe
 from utak.beliefs import World, world_of
 from utak.explaining import ReasonTree, questions
+from utak.kb.body import Impression
 from utak.markup import framed, table
+from utak.simulator.episode.episode import Episode as EpisodeRecord
+from utak.simulator.episode.episode import encode, read_episode
+from utak.simulator.episode.output_files import is_episode, write_whole
+from utak.simulator.explaining.questions import Questions
+from utak.simulator.replay.drawing import step_svg
+from utak.simulator.terminal.action_in_words import describe
 
 MAX_STEPS_SHOWN = 200  # steps of an episode that a notebook lists; a convention
 

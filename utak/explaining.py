@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from kb.evidence.reason import Depth, Reason
-from simulator.episode.episode import Episode as EpisodeRecord
-from simulator.explaining.questions import Questions, questions_of_episode, rule_paths
+from utak.kb.evidence.reason import Depth, Reason
+from utak.simulator.episode.episode import Episode as EpisodeRecord
+from utak.simulator.explaining.questions import Questions, questions_of_episode, rule_paths
 
 OPEN_LEVELS = 2  # levels of a tree that a notebook shows unfolded; a convention
 

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from kb.body import Body, Command, Grasp, Impression, Move, Push, Release, Turn
-from kb.task.task import Task
-from planner.decision import Decision
-from simulator.run.session import CannotAdoptError
-from simulator.scenario.settings import Settings
+from utak.kb.body import Body, Command, Grasp, Impression, Move, Push, Release, Turn
+from utak.kb.task.task import Task
+from utak.planner.decision import Decision
+from utak.simulator.run.session import CannotAdoptError
+from utak.simulator.scenario.settings import Settings
 
 VERDICT_KINDS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
 MIND_COMMANDS = (Move, Push, Turn, Grasp, Release)
@@ -103,7 +103,7 @@ class MindVerdict:
 
 
 class MindRobot:
-    """A robot whose mind is a `Mind`; satisfies the protocol of `simulator.run.session`."""
+    """A robot whose mind is a `Mind`; satisfies the protocol of `utak.simulator.run.session`."""
 
     def __init__(self, body: Body, task: Task, settings: Settings, mind: Mind) -> None:
         self.mind = mind

@@ -8,22 +8,22 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from kb.body import Command, Impression
-from kb.language.diagnostics import BadInputError
-from kb.world.stated_plan import StatedPlan, stated_plan
-from simulator.episode.episode import Episode as EpisodeRecord
-from simulator.episode.episode import EpisodeLog
-from simulator.episode.record import action_entry, header
-from simulator.run.robots import make_robot, warm_for
-from simulator.run.session import RobotMaker, Session
-from simulator.scenario.settings import PATH_CHOICES, Settings, kb_files_named
-from simulator.terminal.action_in_words import describe
 from utak.beliefs import World
 from utak.episode import Episode, Step
 from utak.errors import RunNotRepeatedError
+from utak.kb.body import Command, Impression
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.world.stated_plan import StatedPlan, stated_plan
 from utak.markup import framed, table
 from utak.mind import Mind, mind_maker
 from utak.scenario import Scenario
+from utak.simulator.episode.episode import Episode as EpisodeRecord
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.episode.record import action_entry, header
+from utak.simulator.run.robots import make_robot, warm_for
+from utak.simulator.run.session import RobotMaker, Session
+from utak.simulator.scenario.settings import PATH_CHOICES, Settings, kb_files_named
+from utak.simulator.terminal.action_in_words import describe
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from kb.language.diagnostics import BadInputError
-from kb.task.task import Task, read_task
-from simulator.replay.drawing import table_svg
-from simulator.scenario import scenario as files
-from simulator.scenario.expectation import read_expectations
-from simulator.scenario.picture import draw
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.task.task import Task, read_task
 from utak.markup import framed
+from utak.simulator.replay.drawing import table_svg
+from utak.simulator.scenario import scenario as files
+from utak.simulator.scenario.expectation import read_expectations
+from utak.simulator.scenario.picture import draw
 
 
 @dataclass(frozen=True, repr=False)

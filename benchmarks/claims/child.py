@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from simulator.run.session import RobotMaker
+    from utak.simulator.run.session import RobotMaker
 
 EPISODE_FILE, CYCLES_FILE, RESULT_FILE = "episode.jsonl", "cycles.txt", "result.json"
 
@@ -31,7 +31,7 @@ def main() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (given.seconds, given.seconds + 5))
     if given.megabytes:
         resource.setrlimit(resource.RLIMIT_AS, (given.megabytes << 20,) * 2)
-    from simulator.run.robots import make_robot  # imported within the limits
+    from utak.simulator.run.robots import make_robot  # imported within the limits
 
     run(given.folder, given.noise, given.noise_seed, given.max_steps, make_robot, not given.no_pull)
 
@@ -39,17 +39,18 @@ def main() -> None:
 def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "RobotMaker", pull: bool = True) -> None:
     """Run a robot in the scenario of a folder and write the three files.
 
-    make : makes the robot, as `simulator.run.robots.make_robot` does.
+    make : makes the robot, as `utak.simulator.run.robots.make_robot` does.
     pull : whether a held object may be pulled.
     """
+    from utak.kb.body import Body
+    from utak.kb.task.task import Task
+    from utak.simulator.episode.episode import EpisodeLog
+    from utak.simulator.run.session import Session
+    from utak.simulator.scenario.scenario import read_scenario
+    from utak.simulator.scenario.settings import Settings
+
     from benchmarks.harness.stopwatch import TimedBody, TimedRobot
     from benchmarks.worlds.scenes import RULES_FILE
-    from kb.body import Body
-    from kb.task.task import Task
-    from simulator.episode.episode import EpisodeLog
-    from simulator.run.session import Session
-    from simulator.scenario.scenario import read_scenario
-    from simulator.scenario.settings import Settings
 
     robots: list[TimedRobot] = []
 

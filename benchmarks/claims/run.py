@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from shapely import Polygon
+from utak.simulator.run.warming import warm_all
 
 from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
 from benchmarks.claims.row import ERROR, TIME, ClaimRow
 from benchmarks.harness.judging import CHECKOUT, judge_path
-from simulator.run.warming import warm_all
-from utak_command import isolated_command
+from utak.launcher import isolated_command
 
 WARMING_TASKS = (5, 9)  # tasks: walking, and carrying
 WALL_CLOCK_FACTOR = (

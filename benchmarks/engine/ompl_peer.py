@@ -7,11 +7,10 @@ from typing import Any
 
 import shapely
 from ompl import base, geometric, util
-
-from geometry.motion.body import new_moving_body
-from geometry.motion.cell_clearance import clearance_at
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Pose
+from utak.geometry.motion.body import new_moving_body
+from utak.geometry.motion.cell_clearance import clearance_at
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Pose
 
 PLANNERS = ("RRTConnect", "LBKPIECE1", "BKPIECE1", "KPIECE1", "PRM")
 VALIDITY_RESOLUTION = 0.002

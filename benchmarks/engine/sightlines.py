@@ -5,11 +5,10 @@ shapely), and nothing with the search that it checks.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import XY
-from geometry.kernels.heap import pop, push
-from geometry.kernels.jit import compiled
-from geometry.pathfinders.visibility_graph import extreme_points, line_open
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.kernels.heap import pop, push
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.pathfinders.visibility_graph import extreme_points, line_open
 
 
 class Sightlines:

@@ -20,9 +20,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from utak.simulator.episode.episode import read_episode
+from utak.simulator.explaining.questions import Questions, questions_of_episode
+
 from benchmarks.harness.reasons import complaints
-from simulator.episode.episode import read_episode
-from simulator.explaining.questions import Questions, questions_of_episode
 
 CELLS = 160  # cells of an impression
 

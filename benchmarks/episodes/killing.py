@@ -28,11 +28,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.episode.episode import complete_lines, read_episode
-from simulator.sweep.results import complete_result_lines
-from simulator.terminal import exits
-from utak_command import isolated_command
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.episode.episode import complete_lines, read_episode
+from utak.simulator.sweep.results import complete_result_lines
+from utak.simulator.terminal import exits
+
+from utak.launcher import isolated_command
 
 SCENARIO_FOLDER = Path(__file__).resolve().parents[2] / "examples" / "go_next_room"
 RUN_OPTIONS = ("--noise", "0.05", "--seed", "3")
@@ -62,13 +63,17 @@ class Killed(NamedTuple):
 
 def run_command(scenario: Path, file: Path, *more: str) -> list[str]:
     """Return the command line of a run."""
-    return isolated_command("simulator.cli", "run", str(scenario), *RUN_OPTIONS, "--log", str(file), "--watch", *more)
+    return isolated_command(
+        "utak.simulator.cli", "run", str(scenario), *RUN_OPTIONS, "--log", str(file), "--watch", *more
+    )
 
 
 def sweep_command(scenario: Path, file: Path) -> list[str]:
     """Return the command line of a sweep."""
     times = str(times_of(file))
-    return isolated_command("simulator.cli", "sweep", str(scenario), *SWEEP_OPTIONS, "-o", str(file), "--times", times)
+    return isolated_command(
+        "utak.simulator.cli", "sweep", str(scenario), *SWEEP_OPTIONS, "-o", str(file), "--times", times
+    )
 
 
 def times_of(file: Path) -> Path:

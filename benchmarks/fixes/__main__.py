@@ -17,18 +17,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.episode.episode import EpisodeLog, read_episode
-from simulator.explaining.fixing.changes import Led, MoreCommands, variant_of
-from simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget
-from simulator.explaining.fixing.recorded import RecordedRun, recorded_run
-from simulator.explaining.fixing.report import change_values, changes_in_words, is_repeated
-from simulator.explaining.fixing.search import Fix, FixReport, find_fixes
-from simulator.explaining.fixing.writing import write_scenario
-from simulator.run.robots import make_robot
-from simulator.run.session import Result, Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.episode.episode import EpisodeLog, read_episode
+from utak.simulator.explaining.fixing.changes import Led, MoreCommands, variant_of
+from utak.simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget
+from utak.simulator.explaining.fixing.recorded import RecordedRun, recorded_run
+from utak.simulator.explaining.fixing.report import change_values, changes_in_words, is_repeated
+from utak.simulator.explaining.fixing.search import Fix, FixReport, find_fixes
+from utak.simulator.explaining.fixing.writing import write_scenario
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 
 def scenarios_below(folders: Sequence[Path]) -> list[Path]:

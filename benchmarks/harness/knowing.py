@@ -9,20 +9,20 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from utak.kb.body import Body, Impression
+from utak.kb.knowledge import Knowledge
+from utak.kb.localisation.field_account import Accommodation
+from utak.kb.localisation.hypotheses.frames import FrameHypothesis
+from utak.kb.mapping.occupancy import FREE, OCCUPIED
+from utak.kb.perception.frame import Frame, turned
+from utak.kb.task.task import Task
+from utak.kb.world.model import WorldModel
+from utak.planner.cycle import Options, Robot
+from utak.simulator.run.session import RobotMaker
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario
-from kb.body import Body, Impression
-from kb.knowledge import Knowledge
-from kb.localisation.field_account import Accommodation
-from kb.localisation.hypotheses.frames import FrameHypothesis
-from kb.mapping.occupancy import FREE, OCCUPIED
-from kb.perception.frame import Frame, turned
-from kb.task.task import Task
-from kb.world.model import WorldModel
-from planner.cycle import Options, Robot
-from simulator.run.session import RobotMaker
-from simulator.scenario.settings import Settings
 
 KNOWN_VERGE = 3  # squares of verge known around the table
 

@@ -7,7 +7,7 @@ does not affect.
 import time
 from typing import Any, NamedTuple
 
-from kb.body import Body, Command, Impression
+from utak.kb.body import Body, Command, Impression
 
 
 class Seconds(NamedTuple):

@@ -11,6 +11,14 @@ from typing import Any
 
 import numpy as np
 from shapely import Polygon
+from utak.kb.body import Body
+from utak.kb.task.task import Task
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, RobotMaker, Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 from benchmarks.harness.beliefs import Score, beliefs, compare, under_fovea
 from benchmarks.harness.judging import findings
@@ -21,14 +29,6 @@ from benchmarks.harness.stopwatch import Seconds, TimedBody, TimedRobot
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario, write
-from kb.body import Body
-from kb.task.task import Task
-from simulator.episode.episode import EpisodeLog
-from simulator.run.robots import make_robot
-from simulator.run.session import Result, RobotMaker, Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
-from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 LOOPS = (4,)  # tasks whose shortest way is a loop
 # A trial ends itself after its seconds, unless compiled code does not return. Then its process is ended; a convention.

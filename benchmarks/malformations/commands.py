@@ -10,12 +10,13 @@ from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
+from utak.simulator.cli.main import main
+from utak.simulator.cli.parsing import build_parser
+
 from benchmarks.malformations.episodes import PROJECT_FOLDER, recorded_episodes, spoil_episode
 from benchmarks.malformations.imports import write_malformed_file
 from benchmarks.malformations.outcomes import came_out
-from simulator.cli.main import main
-from simulator.cli.parsing import build_parser
-from utak_command import isolated_command
+from utak.launcher import isolated_command
 
 PROCESS_SECONDS = (
     60.0  # seconds until a process counts as hung: Python starts in one or two on a busy core; a convention
@@ -37,7 +38,7 @@ def given_to(command: list[str], stdin: bytes = b"") -> str:
 
     command : the arguments of `utak`. stdin : what it reads.
     """
-    words = isolated_command("simulator.cli", *command)
+    words = isolated_command("utak.simulator.cli", *command)
     try:
         found = subprocess.run(
             words, input=stdin, capture_output=True, timeout=PROCESS_SECONDS, check=False, cwd=PROJECT_FOLDER

@@ -11,13 +11,14 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
+from utak.kb.reasoning.query import QueryEngine
+from utak.simulator.cli.main import main
+from utak.simulator.run.story import open_story
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.terminal.action_in_words import describe
+
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
-from kb.reasoning.query import QueryEngine
-from simulator.cli.main import main
-from simulator.run.story import open_story
-from simulator.scenario.settings import Settings
-from simulator.terminal.action_in_words import describe
 
 PROJECT_FOLDER = Path(__file__).resolve().parents[2]
 RECORDED = (("go_northeast", "2"), ("push_square_corner", "3"))  # runs that are recorded: example, most commands

@@ -8,13 +8,14 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
+from utak.simulator.cli.commands.files.import_scenario import FORMATS, scenario_files
+from utak.simulator.importing.imported import ImportOptions
+from utak.simulator.scenario.folder_writer import write_folder
+from utak.simulator.scenario.scenario import read_scenario
+
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
 from benchmarks.malformations.samples import HOSTILE_ELEMENTS, HOSTILE_HEADS, SAMPLES, TEXT_PGM, WIDE_PGM
-from simulator.cli.commands.files.import_scenario import FORMATS, scenario_files
-from simulator.importing.imported import ImportOptions
-from simulator.scenario.folder_writer import write_folder
-from simulator.scenario.scenario import read_scenario
 
 HOSTILE_ELEMENT_SHARE = 0.3  # of the pictures that hold an element that is hostile, and are whole otherwise
 HOSTILE_SHARE = 0.05  # of the files that begin with, or hold, something that an attacker would write
@@ -40,7 +41,7 @@ def write_malformed_file(folder: Path, draw: random.Random) -> Path:
 
 def read_imported(path: Path) -> None:
     """Import a file of another format, and check the scenario as an outcome of its own; raise what goes wrong."""
-    reader = import_module(f"simulator.importing.{FORMATS[path.suffix].module}")
+    reader = import_module(f"utak.simulator.importing.{FORMATS[path.suffix].module}")
     imported = reader.read(path, ImportOptions(untrusted=True))
     folder = path.parent / "scenario"
     write_folder(folder, scenario_files(imported, path.name))

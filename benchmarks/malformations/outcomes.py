@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from kb.reasoning.query import QueryLimitError
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.reasoning.query import QueryLimitError
 
 HANG_SECONDS = 10.0  # seconds of processor time until reading a file counts as hung; a convention
 MAX_GROWTH_BYTES = 1_000_000_000  # by which the data of a process may grow while files are read; a convention

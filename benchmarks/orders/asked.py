@@ -4,7 +4,7 @@ from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
-from simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.scenario.scenario import Scenario, read_scenario
 
 PUZZLE_KIND = "pushworld"
 TOUCHING_KIND_SUFFIX = "_touching"  # of puzzles in which a thing of the task touches another one at the start

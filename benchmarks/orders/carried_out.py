@@ -7,19 +7,19 @@ from typing import Any
 
 import numpy as np
 from shapely import Point
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.legs import Leg
+from utak.geometry.motion.se2 import Translate
+from utak.geometry.screen import Screen
+from utak.kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from utak.kb.language.vocabulary import ROBOT
+from utak.simulator.run.embodiment import Embodiment
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import Thing, World
 
 from benchmarks.orders.search import Carry
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
-from geometry.kernels.arrays import XY
-from geometry.manipulation.legs import Leg
-from geometry.motion.se2 import Translate
-from geometry.screen import Screen
-from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
-from kb.language.vocabulary import ROBOT
-from simulator.run.embodiment import Embodiment
-from simulator.world.physics import Tabletop
-from simulator.world.world import Thing, World
 
 
 def does_task(world: SeveralWorld, way: Sequence[Carry | XY]) -> bool:

@@ -18,15 +18,15 @@ from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.goals import At
+from utak.geometry.motion.se2 import Pose
+from utak.planner.oracles.carry import CarryOracle
+from utak.planner.oracles.problem import TaskProblem
+from utak.planner.situation import Situation
+from utak.planner.tasking.search import MadePlan, make_plan
 
 from benchmarks.worlds.drawn import drawn_problem, drawn_situation
-from geometry.kernels.arrays import XY
-from geometry.manipulation.goals import At
-from geometry.motion.se2 import Pose
-from planner.oracles.carry import CarryOracle
-from planner.oracles.problem import TaskProblem
-from planner.situation import Situation
-from planner.tasking.search import MadePlan, make_plan
 
 WIDTH, HEIGHT, SIDE = 36, 22, 3  # squares of the room and of a thing (a convention)
 LEAST_WALL, MOST_WALL = 8, 13  # squares that the wall reaches into the room

@@ -10,10 +10,10 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from kb.reasoning.assumptions import read_assumptions
-from kb.reasoning.query import QueryEngine, QueryLimitError
-from kb.reasoning.user_rules import RuleLimits, read_tested_rules
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.reasoning.assumptions import read_assumptions
+from utak.kb.reasoning.query import QueryEngine, QueryLimitError
+from utak.kb.reasoning.user_rules import RuleLimits, read_tested_rules
 
 GRACE_SECONDS = 0.5  # seconds beyond the limit within which everything must be stopped
 RUNAWAY_FACTS = [f"{text}." for n in range(250) for text in (f"kind(o{n},object,90)", f"offset(o{n},{n},{-n})",

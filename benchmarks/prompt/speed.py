@@ -13,7 +13,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from kb.reasoning.query import QueryEngine
+from utak.kb.reasoning.query import QueryEngine
 
 CHECKOUT_FOLDER = Path(__file__).resolve().parents[2]
 MAX_READY_SECONDS = 0.5  # what is wanted of the prompt
@@ -35,7 +35,7 @@ def seconds_to_prompt(story: str, **environment: str) -> tuple[float, float]:
     """Return the wall-clock and the processor seconds that `utak repl STORY` takes at a terminal to its prompt."""
     master, slave = pty.openpty()
     begin, seen = time.monotonic(), b""
-    command = [sys.executable, str(CHECKOUT_FOLDER / "utak_command.py"), "", "simulator.cli", "repl", story]
+    command = [sys.executable, str(CHECKOUT_FOLDER / "utak" / "launcher.py"), "", "utak.simulator.cli", "repl", story]
     with subprocess.Popen(command, stdin=slave, stdout=slave, stderr=slave, env=os.environ | environment) as process:
         os.close(slave)
         try:

@@ -17,15 +17,16 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from utak.kb.language.diagnostics import BadInputError
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+
 from benchmarks.bounded import EXAMPLES_FOLDER
 from benchmarks.rules.track import WALL_AT, TrueTrack
 from benchmarks.rules.tried import TRIED_RULES, WALKS
-from kb.language.diagnostics import BadInputError
-from simulator.episode.episode import EpisodeLog
-from simulator.run.robots import make_robot
-from simulator.run.session import Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
 
 MAX_RULED_COMMANDS = 120  # of a run; each of the examples is done within half of it
 

@@ -19,11 +19,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from kb.body import DIRECTIONS
-from simulator.scenario.scenario import read_any_world
-from simulator.world.physics import Tabletop
-from simulator.world.world import VERGE_COLOUR
+from utak.kb.body import DIRECTIONS
+from utak.simulator.scenario.scenario import read_any_world
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import VERGE_COLOUR
 
 PLAYED_FOLDER = Path(__file__).resolve().parents[2] / "examples"
 PLAYED_EXAMPLES = ("go_next_room", "push_l_next_room", "push_square_three_rooms", "go_northeast_askew")

@@ -15,9 +15,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from kb.explanation.programs import decision_program, encoding_names
-from kb.explanation.proof import explain_decision
-from kb.explanation.whynot import explain_absence
+from utak.kb.explanation.programs import decision_program, encoding_names
+from utak.kb.explanation.proof import explain_decision
+from utak.kb.explanation.whynot import explain_absence
 
 ExplainedCall = tuple[str, tuple[str, ...], tuple[str, ...]]  # the encoding, its facts, the shown atoms of its answer
 

@@ -14,14 +14,13 @@ import time
 from collections.abc import Sequence
 
 from shapely import Polygon, box
-
-from kb.language.reader import parse_facts
-from kb.language.source_text import Source
-from kb.task.task import task_of
-from planner.cycle import Options, Robot
-from simulator.run.embodiment import Embodiment
-from simulator.world.physics import Tabletop
-from simulator.world.world import Thing, World
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import Source
+from utak.kb.task.task import task_of
+from utak.planner.cycle import Options, Robot
+from utak.simulator.run.embodiment import Embodiment
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import Thing, World
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -22,7 +22,7 @@ from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.scenes import write
 
 ROOT = Path(__file__).resolve().parents[2]
-START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from utak_command import main; sys.exit(main())"
+START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from utak.launcher import main; sys.exit(main())"
 
 
 def scenarios(count: int, seed: int, folder: Path) -> Iterator[Path]:

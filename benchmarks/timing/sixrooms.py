@@ -27,7 +27,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from utak_command import isolated_command
+from utak.launcher import isolated_command
 
 TIMED_KINDS = ("corner", "square", "brick", "l_shape", "pose")
 STAGES = ("start", "import", "read", "model", "decide", "thinking", "all", "cpu", "thought")

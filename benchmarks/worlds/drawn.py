@@ -4,22 +4,21 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import shapely
-
-from geometry.manipulation.goals import End
-from geometry.motion.se2 import Pose
-from kb.mapping.occupancy import FREE, OCCUPIED, MapView
-from kb.mapping.patch import Patch
-from kb.perception.frame import Frame
-from kb.perception.interpretation import interpret_regions
-from kb.perception.regions import map_regions
-from kb.task.task import Task
-from kb.world.corners import corners
-from kb.world.model import Node, WorldModel
-from kb.world.rooms import rooms_of
-from planner.goals.placement import to_view_frame
-from planner.oracles.problem import Lying, PlacedGoal, TableState, TaskProblem
-from planner.screen.projection import CostMaps
-from planner.situation import Situation
+from utak.geometry.manipulation.goals import End
+from utak.geometry.motion.se2 import Pose
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, MapView
+from utak.kb.mapping.patch import Patch
+from utak.kb.perception.frame import Frame
+from utak.kb.perception.interpretation import interpret_regions
+from utak.kb.perception.regions import map_regions
+from utak.kb.task.task import Task
+from utak.kb.world.corners import corners
+from utak.kb.world.model import Node, WorldModel
+from utak.kb.world.rooms import rooms_of
+from utak.planner.goals.placement import to_view_frame
+from utak.planner.oracles.problem import Lying, PlacedGoal, TableState, TaskProblem
+from utak.planner.screen.projection import CostMaps
+from utak.planner.situation import Situation
 
 NO_TASK = Task({}, (), ())
 

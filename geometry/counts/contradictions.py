@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.jit import compiled
 
 SIGHT_RADIUS = 24  # squares; how far can be seen from a place, at any angle of the frame
 SAID_FREE, SAID_OCCUPIED = 1, 2  # bits: what some field says of a square

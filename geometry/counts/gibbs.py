@@ -21,9 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.settle import FREE, OCCUPIED
-from geometry.kernels.jit import bare
+from utak.geometry.counts.settle import FREE, OCCUPIED
+from utak.geometry.kernels.jit import bare
 
 # Values of the ground, besides FREE and OCCUPIED, which settle.py fixes for the squares that counts settle.
 DRAWN = 2  # a square whose state is drawn

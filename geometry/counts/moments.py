@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.gibbs import UNSEEN_SQUARE
-from geometry.kernels.jit import compiled
+from utak.geometry.counts.gibbs import UNSEEN_SQUARE
+from utak.geometry.kernels.jit import compiled
 
 
 class Blobs(NamedTuple):
@@ -33,7 +32,7 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
 
     Examples
     --------
-    >>> from geometry.counts.gibbs import DRAWN
+    >>> from utak.geometry.counts.gibbs import DRAWN
     >>> found = blobs(np.pad(np.ones((3, 3), np.int8), 2), np.full((7, 7), DRAWN, np.int8))
     >>> found.area.tolist(), found.outward.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
     ([9], [0], [1.0], [0.0])

@@ -15,9 +15,8 @@ fields of which neither is fresh have settled all that they settle together.
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Ints, Longs
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.arrays import Ints, Longs
+from utak.geometry.kernels.jit import compiled
 
 OPEN, FREE, OCCUPIED = -1, 0, 1  # states of a square: not settled, settled as free, settled as occupied
 MAX_ROUNDS = 20  # rounds of both rules; convention, a bound on time

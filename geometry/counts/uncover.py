@@ -2,9 +2,8 @@
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.kernels.jit import compiled
 
 
 @compiled

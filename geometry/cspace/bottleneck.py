@@ -15,10 +15,9 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely import affinity
-
-from geometry.kernels.arrays import Bools, Floats
-from geometry.kernels.jit import compiled
-from geometry.motion.obstacle_field import ObstacleField, cheapest_path_costs
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.motion.obstacle_field import ObstacleField, cheapest_path_costs
 
 StatusQuery = Callable[[Any, int], tuple[str, int]]  # status and cells used, of obstacles and the cells allowed
 WIDTH_PRECISION = 0.02  # squares: the bisection for the missing width ends at this; a convention

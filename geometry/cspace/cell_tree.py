@@ -14,10 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import (
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.jit import bare
+from utak.geometry.motion.cell_clearance import (
     CELL_BLOCKED,
     CELL_GIVEN_UP,
     CELL_UNDECIDED,

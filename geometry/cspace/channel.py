@@ -15,13 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
-from geometry.cspace.search_tree import SearchTree, add_cell, cut_off, new_search_tree, set_parent, sort_cells
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.bounded_heap import pop, push
-from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import (
+from utak.geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
+from utak.geometry.cspace.search_tree import SearchTree, add_cell, cut_off, new_search_tree, set_parent, sort_cells
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.bounded_heap import pop, push
+from utak.geometry.kernels.jit import bare
+from utak.geometry.motion.cell_clearance import (
     CELL_BLOCKED,
     CELL_CENTRE_FREE,
     CELL_FREE,

@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Floats
-from geometry.motion.validation import MAX_COORDINATE
+from utak.geometry.kernels.arrays import XY, Floats
+from utak.geometry.motion.validation import MAX_COORDINATE
 
 DISC_SHRINKAGE = 1e-7  # squares: the inscribed disc is taken to be smaller by this, for bodies may touch; a convention
 SIDES_PER_QUARTER = 4  # sides of the polygon that approximates a quarter of a circle; a convention

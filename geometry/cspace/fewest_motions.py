@@ -11,13 +11,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.cspace.local_planner import BLOCKED, MIN_MOTION, HopContext, hop, shorter_turn
-from geometry.cspace.smoothing import motions_along
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import bare, compiled
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at
-from geometry.motion.se2 import Motion
+from utak.geometry.cspace.local_planner import BLOCKED, MIN_MOTION, HopContext, hop, shorter_turn
+from utak.geometry.cspace.smoothing import motions_along
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import bare, compiled
+from utak.geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at
+from utak.geometry.motion.se2 import Motion
 
 PUSH_PER_MOTION = 40.0  # squares pushed that cost as much as one motion more; tuned on random worlds
 TURN_PER_MOTION = 20.0  # radians turned that cost as much as one motion more; tuned (benchmarks.campaign)

@@ -7,11 +7,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges
-from geometry.motion.time_of_impact import Surface, first_push_skin_hit, first_turn_skin_hit
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import bare
+from utak.geometry.motion.cell_clearance import MovingBody, NearbyEdges
+from utak.geometry.motion.time_of_impact import Surface, first_push_skin_hit, first_turn_skin_hit
 
 BLOCKED, TURN_FIRST, PUSH_FIRST = 0, 1, 2  # outcomes of hop
 MIN_MOTION = 1e-12  # radians or squares: smaller motions count as none; bounds rounding

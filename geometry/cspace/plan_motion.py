@@ -18,14 +18,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.cspace.bottleneck import Bottleneck, find_bottleneck, missing_width, status_when_wide
-from geometry.cspace.solver import Inside, MotionSolver
-from geometry.kernels.arrays import Floats
-from geometry.motion.body import new_moving_body
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Motion, Pose, Translate
-from geometry.motion.validation import require_bounded
+from utak.geometry.cspace.bottleneck import Bottleneck, find_bottleneck, missing_width, status_when_wide
+from utak.geometry.cspace.solver import Inside, MotionSolver
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.motion.body import new_moving_body
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Motion, Pose, Translate
+from utak.geometry.motion.validation import require_bounded
 
 __all__ = ["Inside", "MotionPlan", "plan_motion"]
 

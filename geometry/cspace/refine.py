@@ -5,12 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.cspace.cell_tree import CellTree, give_up_cell, is_splittable, split_cell
-from geometry.cspace.local_planner import BLOCKED, HopContext, copy_pose, hop
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import CELL_CENTRE_FREE, CELL_FREE, CELL_GIVEN_UP
+from utak.geometry.cspace.cell_tree import CellTree, give_up_cell, is_splittable, split_cell
+from utak.geometry.cspace.local_planner import BLOCKED, HopContext, copy_pose, hop
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.jit import bare
+from utak.geometry.motion.cell_clearance import CELL_CENTRE_FREE, CELL_FREE, CELL_GIVEN_UP
 
 
 class HopSequence(NamedTuple):

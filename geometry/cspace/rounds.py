@@ -1,11 +1,11 @@
 """Rounds of a search: find a channel, follow it, split what is to blame, until one is free or none is left."""
 
-from geometry.cspace.cell_tree import CellTree, leaf_at
-from geometry.cspace.channel import REGION_GOAL, ChannelSearch, find_channel
-from geometry.cspace.local_planner import HopContext
-from geometry.cspace.refine import HopSequence, follow_channel
-from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import NearbyEdges
+from utak.geometry.cspace.cell_tree import CellTree, leaf_at
+from utak.geometry.cspace.channel import REGION_GOAL, ChannelSearch, find_channel
+from utak.geometry.cspace.local_planner import HopContext
+from utak.geometry.cspace.refine import HopSequence, follow_channel
+from utak.geometry.kernels.jit import bare
+from utak.geometry.motion.cell_clearance import NearbyEdges
 
 SEARCH_EXHAUSTED, SEARCH_FOUND, SEARCH_UNFINISHED = 0, 1, 2  # outcomes of run_rounds
 

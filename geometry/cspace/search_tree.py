@@ -7,9 +7,8 @@ cells. The children of a cell are a linked list in arrays. Plain loops for numba
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Ints
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Ints
+from utak.geometry.kernels.jit import bare
 
 
 class SearchTree(NamedTuple):

@@ -4,12 +4,11 @@ import math
 from itertools import pairwise
 
 import numpy as np
-
-from geometry.cspace.local_planner import BLOCKED, MIN_MOTION, TURN_FIRST, HopContext, copy_pose, hop, shorter_turn
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import bare, compiled
-from geometry.motion.cell_clearance import clearance_at
-from geometry.motion.se2 import Motion, Rotate, Translate
+from utak.geometry.cspace.local_planner import BLOCKED, MIN_MOTION, TURN_FIRST, HopContext, copy_pose, hop, shorter_turn
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import bare, compiled
+from utak.geometry.motion.cell_clearance import clearance_at
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
 
 TOUCHING_CLEARANCE = 0.01  # part of the body's radius: with less clearance a pose counts as touching; a convention
 PULL_ROUNDS = 4  # times that every corner of a path is pulled straight; tuned on random worlds (benchmarks.campaign)

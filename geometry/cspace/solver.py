@@ -9,20 +9,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.cspace.cell_tree import CellTree, new_cell_tree
-from geometry.cspace.channel import NODE_SETTLED, ChannelSearch, new_channel_search
-from geometry.cspace.disc_bounds import disc_room, find_disc_path, is_cut_off
-from geometry.cspace.local_planner import BLOCKED, HopContext, hop, new_hop_context
-from geometry.cspace.refine import new_hop_sequence
-from geometry.cspace.rounds import SEARCH_FOUND, SEARCH_UNFINISHED, next_channel, run_rounds
-from geometry.cspace.smoothing import motions_along, pose_with_room, shorten_path
-from geometry.kernels.arrays import Floats
-from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import CELL_CENTRE_FREE, MovingBody, NearbyEdges
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Motion, Pose
-from geometry.motion.validation import valid_polygons
+from utak.geometry.cspace.cell_tree import CellTree, new_cell_tree
+from utak.geometry.cspace.channel import NODE_SETTLED, ChannelSearch, new_channel_search
+from utak.geometry.cspace.disc_bounds import disc_room, find_disc_path, is_cut_off
+from utak.geometry.cspace.local_planner import BLOCKED, HopContext, hop, new_hop_context
+from utak.geometry.cspace.refine import new_hop_sequence
+from utak.geometry.cspace.rounds import SEARCH_FOUND, SEARCH_UNFINISHED, next_channel, run_rounds
+from utak.geometry.cspace.smoothing import motions_along, pose_with_room, shorten_path
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.motion.body import centre_pose
+from utak.geometry.motion.cell_clearance import CELL_CENTRE_FREE, MovingBody, NearbyEdges
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Motion, Pose
+from utak.geometry.motion.validation import valid_polygons
 
 SMALL_BODY_CELLS = 20  # cells: a body of fewer across is decided by its discs if the cells do not decide; a convention
 ROUNDS_PER_CALL = 64  # rounds in one kernel call; between two calls the user may interrupt; a convention

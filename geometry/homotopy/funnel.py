@@ -9,9 +9,8 @@ free ends of the path round at all.
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.jit import bare
 
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
 

@@ -3,15 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.funnel import Funnel, measure_line, new_funnel, tighten_word
-from geometry.homotopy.strips import Strips, append_symbol, symbol_between
-from geometry.kernels.arrays import Floats, Ints, SquaredDistances
-from geometry.kernels.heap import pop, push
-from geometry.kernels.jit import bare
-from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import find, first_direction, is_node, other_direction
-from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
+from utak.geometry.homotopy.funnel import Funnel, measure_line, new_funnel, tighten_word
+from utak.geometry.homotopy.strips import Strips, append_symbol, symbol_between
+from utak.geometry.kernels.arrays import Floats, Ints, SquaredDistances
+from utak.geometry.kernels.heap import pop, push
+from utak.geometry.kernels.jit import bare
+from utak.geometry.skeleton.chains import Chains
+from utak.geometry.skeleton.graph import find, first_direction, is_node, other_direction
+from utak.geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 
 LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; chosen, no measurement on record
 

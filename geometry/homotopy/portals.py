@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-
-from geometry.homotopy.strips import Strips, append_symbol, strip_at, symbol_between
-from geometry.kernels.arrays import XY, Ints
+from utak.geometry.homotopy.strips import Strips, append_symbol, strip_at, symbol_between
+from utak.geometry.kernels.arrays import XY, Ints
 
 WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the wall corner that it touches
 

@@ -14,9 +14,8 @@ cell is a square given by its index in the flat screen with one blocked cell on 
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Ints, SquaredDistances
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Ints, SquaredDistances
+from utak.geometry.kernels.jit import bare
 
 
 class Strips(NamedTuple):

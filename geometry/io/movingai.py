@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
+from utak.geometry.kernels.arrays import Bools
 
 PASSABLE_LETTERS = ".GS"
 MAP_LETTERS = PASSABLE_LETTERS + "@OTW"

@@ -4,12 +4,11 @@ from collections.abc import Callable, Iterable, Sequence
 from math import floor, isnan, log10
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.passages.necks import Passage
-from geometry.raster.runs import runs_along_rows
-from geometry.routes.route import Route
-from geometry.screen import Screen
+from utak.geometry.kernels.arrays import XY, Bools, Floats
+from utak.geometry.passages.necks import Passage
+from utak.geometry.raster.runs import runs_along_rows
+from utak.geometry.routes.route import Route
+from utak.geometry.screen import Screen
 
 # Colours that colour-blind readers can tell apart (Okabe and Ito 2008).
 ROUTE_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")

@@ -2,11 +2,10 @@
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.heap import pop as pop_item
-from geometry.kernels.heap import push as push_item
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.heap import pop as pop_item
+from utak.geometry.kernels.heap import push as push_item
+from utak.geometry.kernels.jit import bare
 
 HeapSize = npt.NDArray[np.int64]  # (2,) number of items on the heap, number of items dropped
 

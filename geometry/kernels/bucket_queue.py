@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Ints
-from geometry.kernels.jit import bare, compiled
+from utak.geometry.kernels.arrays import Ints
+from utak.geometry.kernels.jit import bare, compiled
 
 BUCKETS = 2048  # number of buckets; bounds the cost of a step, which must be less
 

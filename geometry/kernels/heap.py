@@ -1,7 +1,7 @@
 """A binary heap in two arrays: keys, and the items that they belong to. The caller keeps its size."""
 
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.jit import bare
 
 
 @bare

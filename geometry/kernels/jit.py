@@ -81,7 +81,7 @@ def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool
     import numba
 
     _skip_blas_lookup()
-    from geometry.kernels.cache import allow_reading, make_safe
+    from utak.geometry.kernels.cache import allow_reading, make_safe
 
     allow_reading()
     options: Any = {"error_model": "numpy", "_nrt": counts_references, "no_cfunc_wrapper": True}

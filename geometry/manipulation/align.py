@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.cspace.fewest_motions import longest_edge_tilt
-from geometry.kernels.arrays import XY
-from geometry.manipulation.grasps import grasp_candidates
-from geometry.manipulation.lattice_planner import plan_on_lattice
-from geometry.manipulation.legs import Leg, commands, direction_to_grasp, may_push, round_motion
-from geometry.manipulation.query import ManipulationQuery, join_legs, query_after
-from geometry.motion.se2 import Motion, Rotate, Translate
+from utak.geometry.cspace.fewest_motions import longest_edge_tilt
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.grasps import grasp_candidates
+from utak.geometry.manipulation.lattice_planner import plan_on_lattice
+from utak.geometry.manipulation.legs import Leg, commands, direction_to_grasp, may_push, round_motion
+from utak.geometry.manipulation.query import ManipulationQuery, join_legs, query_after
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
 
 MIN_ALIGNMENT = 1e-6  # degrees or squares; rounding: less is no motion
 MAX_ALIGNMENTS = 4  # first legs for which the rest is planned; convention, for time

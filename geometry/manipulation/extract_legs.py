@@ -4,15 +4,14 @@ import math
 from itertools import groupby, pairwise
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Floats, Longs
-from geometry.manipulation.goals import At, shape_at_pose
-from geometry.manipulation.legs import Leg, PushSegment, direction_to_grasp, round_motion, with_pivots_at_robot
-from geometry.manipulation.query import ManipulationQuery
-from geometry.manipulation.workspace import padded_shape
-from geometry.motion.se2 import Motion, Rotate, Translate
-from geometry.state_lattice.footprints import Footprints, quarter
-from geometry.state_lattice.lattice import Costs, Grid
+from utak.geometry.kernels.arrays import XY, Floats, Longs
+from utak.geometry.manipulation.goals import At, shape_at_pose
+from utak.geometry.manipulation.legs import Leg, PushSegment, direction_to_grasp, round_motion, with_pivots_at_robot
+from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.manipulation.workspace import padded_shape
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.geometry.state_lattice.footprints import Footprints, quarter
+from utak.geometry.state_lattice.lattice import Costs, Grid
 
 MAX_END_SAMPLES = 300  # ends of a push that are tried; convention, for time
 CENTRE_TOLERANCE = 1e-7  # squares; rounding: a robot this near to the centre of its square is at it

@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.cspace.plan_motion import MotionPlan, plan_motion
-from geometry.manipulation.goals import At, Between, InCorner, Inside, goal_key
-from geometry.manipulation.query import ManipulationQuery
-from geometry.motion.se2 import Pose
+from utak.geometry.cspace.plan_motion import MotionPlan, plan_motion
+from utak.geometry.manipulation.goals import At, Between, InCorner, Inside, goal_key
+from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.motion.se2 import Pose
 
 MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a bound on time, no measurement on record
 

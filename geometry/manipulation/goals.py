@@ -8,13 +8,12 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.cspace.solver import Inside
-from geometry.kernels.arrays import Bools
-from geometry.motion.se2 import Pose, turned
-from geometry.raster.rasterize import covered_areas
-from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
-from geometry.state_lattice.lattice import COMMAND_COST, Costs, Grid, StateLattice
+from utak.geometry.cspace.solver import Inside
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.motion.se2 import Pose, turned
+from utak.geometry.raster.rasterize import covered_areas
+from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
+from utak.geometry.state_lattice.lattice import COMMAND_COST, Costs, Grid, StateLattice
 
 __all__ = ["At", "Between", "End", "InCorner", "Inside"]
 

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-
-from geometry.cspace.fewest_motions import resample_evenly
-from geometry.kernels.arrays import XY, Floats
-from geometry.manipulation.query import ManipulationQuery
-from geometry.raster.geodesic import FIFTHS_PER_SQUARE, reach
-from geometry.raster.rasterize import squares
-from geometry.state_lattice.footprints import PUSH_DIRECTIONS
+from utak.geometry.cspace.fewest_motions import resample_evenly
+from utak.geometry.kernels.arrays import XY, Floats
+from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, reach
+from utak.geometry.raster.rasterize import squares
+from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_TRACK_SAMPLES = 60  # poses of a track that are looked at; convention, for time
 

@@ -9,18 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.extract_legs import CENTRE_TOLERANCE, LegExtraction
-from geometry.manipulation.goals import end_costs
-from geometry.manipulation.legs import Leg, commands, may_push, only_pushes, round_motion, verified
-from geometry.manipulation.query import ManipulationQuery, query_after
-from geometry.manipulation.workspace import padded_shape
-from geometry.motion.se2 import Rotate, Translate
-from geometry.state_lattice.astar import ADMISSIBLE_WEIGHT, costs_to_first_grasp, find_carrying_path
-from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, new_footprints
-from geometry.state_lattice.heuristic import can_reach_end, cost_to_go
-from geometry.state_lattice.lattice import (
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.manipulation.extract_legs import CENTRE_TOLERANCE, LegExtraction
+from utak.geometry.manipulation.goals import end_costs
+from utak.geometry.manipulation.legs import Leg, commands, may_push, only_pushes, round_motion, verified
+from utak.geometry.manipulation.query import ManipulationQuery, query_after
+from utak.geometry.manipulation.workspace import padded_shape
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.state_lattice.astar import ADMISSIBLE_WEIGHT, costs_to_first_grasp, find_carrying_path
+from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, new_footprints
+from utak.geometry.state_lattice.heuristic import can_reach_end, cost_to_go
+from utak.geometry.state_lattice.lattice import (
     COMMAND_COST,
     CORNER_GRASP_COST,
     REGRASP_COST,

@@ -12,12 +12,11 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools, Floats, Longs
-from geometry.manipulation.workspace import Workspace, widened_body
-from geometry.motion.se2 import Motion, Rotate, Translate
-from geometry.raster.rasterize import MIN_COVERED_AREA, covered_areas
-from geometry.state_lattice.footprints import PUSH_DIRECTIONS
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs
+from utak.geometry.manipulation.workspace import Workspace, widened_body
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.geometry.raster.rasterize import MIN_COVERED_AREA, covered_areas
+from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_STOPS = 40  # stops of a push that are tried as its corners, besides those where it turns; convention, for time
 LEG_DECIMALS = 9  # decimal digits of the numbers in commands; convention

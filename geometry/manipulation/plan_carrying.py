@@ -16,22 +16,21 @@ from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.cspace.bottleneck import Bottleneck
-from geometry.cspace.plan_motion import MotionPlan
-from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.manipulation.align import plan_aligned
-from geometry.manipulation.free_body import plan_body_alone
-from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, is_goal_met
-from geometry.manipulation.lattice_planner import plan_on_lattice
-from geometry.manipulation.legs import Leg, commands, shifted, verified
-from geometry.manipulation.press import press_into_corner
-from geometry.manipulation.query import ManipulationQuery
-from geometry.manipulation.single_grasp import plan_by_freeing, plan_with_one_grasp
-from geometry.manipulation.workspace import workspace_of
-from geometry.motion.first_contact import boundary_edges
-from geometry.motion.se2 import Pose, Rotate, Translate
-from geometry.motion.validation import require_bounded, valid_polygons
+from utak.geometry.cspace.bottleneck import Bottleneck
+from utak.geometry.cspace.plan_motion import MotionPlan
+from utak.geometry.kernels.arrays import XY, Bools, Floats
+from utak.geometry.manipulation.align import plan_aligned
+from utak.geometry.manipulation.free_body import plan_body_alone
+from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, is_goal_met
+from utak.geometry.manipulation.lattice_planner import plan_on_lattice
+from utak.geometry.manipulation.legs import Leg, commands, shifted, verified
+from utak.geometry.manipulation.press import press_into_corner
+from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.manipulation.single_grasp import plan_by_freeing, plan_with_one_grasp
+from utak.geometry.manipulation.workspace import workspace_of
+from utak.geometry.motion.first_contact import boundary_edges
+from utak.geometry.motion.se2 import Pose, Rotate, Translate
+from utak.geometry.motion.validation import require_bounded, valid_polygons
 
 MIN_WALLS_SINE = 0.1  # sine of the angle between the two walls of a corner, at least; convention
 # Commands; derived: with the extra cost of a tight turn it stays below geometry.kernels.bucket_queue.BUCKETS.

@@ -9,10 +9,10 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 
-from geometry.manipulation.goals import GOAL_TOLERANCE, InCorner
-from geometry.manipulation.legs import Leg, only_pushes, round_motion, verified
-from geometry.manipulation.query import ManipulationQuery
-from geometry.motion.se2 import Motion, Rotate, Translate
+from utak.geometry.manipulation.goals import GOAL_TOLERANCE, InCorner
+from utak.geometry.manipulation.legs import Leg, only_pushes, round_motion, verified
+from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
 
 
 def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:

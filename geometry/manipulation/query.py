@@ -7,12 +7,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import At, End, goal_key, shape_at_pose
-from geometry.manipulation.legs import Leg
-from geometry.manipulation.workspace import Workspace
-from geometry.motion.se2 import Pose, Rotate, Translate, turned
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import At, End, goal_key, shape_at_pose
+from utak.geometry.manipulation.legs import Leg
+from utak.geometry.manipulation.workspace import Workspace
+from utak.geometry.motion.se2 import Pose, Rotate, Translate, turned
 
 GRASP_AVOID_DISTANCE = 0.25  # squares; convention: a grasp this near to one that failed is the same grasp
 

@@ -14,17 +14,16 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.cspace.fewest_motions import fewest_motions, longest_edge_angle, longest_edge_tilt
-from geometry.cspace.local_planner import new_hop_context
-from geometry.cspace.plan_motion import plan_motion
-from geometry.kernels.arrays import XY, Floats
-from geometry.manipulation.align import plan_aligned
-from geometry.manipulation.free_body import plan_body_alone
-from geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, shape_at_pose
-from geometry.manipulation.grasps import GraspCandidate, grasp_candidates, grasp_rank
-from geometry.manipulation.lattice_planner import plan_on_lattice
-from geometry.manipulation.legs import (
+from utak.geometry.cspace.fewest_motions import fewest_motions, longest_edge_angle, longest_edge_tilt
+from utak.geometry.cspace.local_planner import new_hop_context
+from utak.geometry.cspace.plan_motion import plan_motion
+from utak.geometry.kernels.arrays import XY, Floats
+from utak.geometry.manipulation.align import plan_aligned
+from utak.geometry.manipulation.free_body import plan_body_alone
+from utak.geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, shape_at_pose
+from utak.geometry.manipulation.grasps import GraspCandidate, grasp_candidates, grasp_rank
+from utak.geometry.manipulation.lattice_planner import plan_on_lattice
+from utak.geometry.manipulation.legs import (
     Leg,
     direction_to_grasp,
     only_pushes,
@@ -32,10 +31,10 @@ from geometry.manipulation.legs import (
     verified,
     with_pivots_at_robot,
 )
-from geometry.manipulation.query import ManipulationQuery, join_legs, query_after
-from geometry.manipulation.workspace import ROBOT_CLEARANCE, padded_shape
-from geometry.motion.body import centre_pose, new_moving_body
-from geometry.motion.se2 import Motion, Pose
+from utak.geometry.manipulation.query import ManipulationQuery, join_legs, query_after
+from utak.geometry.manipulation.workspace import ROBOT_CLEARANCE, padded_shape
+from utak.geometry.motion.body import centre_pose, new_moving_body
+from utak.geometry.motion.se2 import Motion, Pose
 
 # Bounds on time; no measurement on record.
 MAX_GRASPS = 6  # grasps that are asked

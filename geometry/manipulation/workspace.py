@@ -6,12 +6,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools, Floats
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Motion
-from geometry.raster.runs import runs_along_rows
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Motion
+from utak.geometry.raster.runs import runs_along_rows
 
 OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
 ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Floats
-from geometry.motion.cell_clearance import MovingBody
-from geometry.motion.first_contact import boundary_edges, with_normals
-from geometry.motion.se2 import Pose
-from geometry.motion.validation import require_bounded, valid_polygons
+from utak.geometry.kernels.arrays import XY, Floats
+from utak.geometry.motion.cell_clearance import MovingBody
+from utak.geometry.motion.first_contact import boundary_edges, with_normals
+from utak.geometry.motion.se2 import Pose
+from utak.geometry.motion.validation import require_bounded, valid_polygons
 
 MAX_DISCS = 16  # inscribed discs of a body at most; tuned on random worlds (benchmarks.campaign)
 CANDIDATES_PER_SIDE = 16  # candidate disc centres along the longer side of a body's bounding box; tuned likewise

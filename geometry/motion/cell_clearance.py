@@ -9,8 +9,8 @@ unit normal x and y, length; the interior lies on their left.
 import math
 from typing import NamedTuple
 
-from geometry.kernels.arrays import Floats, Longs
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Floats, Longs
+from utak.geometry.kernels.jit import bare
 
 # The kinds of cells (see classify_cell). Their order is compared. The search sets CELL_GIVEN_UP.
 CELL_FREE, CELL_CENTRE_FREE, CELL_UNDECIDED, CELL_BLOCKED, CELL_GIVEN_UP = 0, 1, 2, 3, 4

@@ -20,10 +20,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.kernels.arrays import Floats
-from geometry.motion.se2 import Motion, Translate
-from geometry.motion.time_of_impact import (
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.geometry.motion.time_of_impact import (
     Surface,
     first_push_contact,
     first_turn_contact,

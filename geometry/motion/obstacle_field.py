@@ -13,15 +13,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.kernels.arrays import Floats, Longs
-from geometry.kernels.bucket_queue import Queue, new_queue, put, take
-from geometry.kernels.jit import bare, compiled
-from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at, squared_distance_to_edge
-from geometry.motion.first_contact import Obstacles
-from geometry.motion.se2 import Pose
-from geometry.motion.validation import MAX_COORDINATE, valid_polygons
+from utak.geometry.kernels.arrays import Floats, Longs
+from utak.geometry.kernels.bucket_queue import Queue, new_queue, put, take
+from utak.geometry.kernels.jit import bare, compiled
+from utak.geometry.motion.body import centre_pose
+from utak.geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at, squared_distance_to_edge
+from utak.geometry.motion.first_contact import Obstacles
+from utak.geometry.motion.se2 import Pose
+from utak.geometry.motion.validation import MAX_COORDINATE, valid_polygons
 
 RASTER_PIXELS = 128  # pixels along the longer side of the raster; tuned on random worlds (benchmarks.campaign)
 BLOCK_PIXELS = 8  # pixels along the side of a block; tuned likewise

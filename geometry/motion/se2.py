@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Floats
+from utak.geometry.kernels.arrays import Floats
 
 
 class Pose(NamedTuple):

@@ -2,9 +2,8 @@
 
 import numpy as np
 import shapely
-
-from geometry.passages.necks import Passage, Segment
-from geometry.passages.walls import Walls
+from utak.geometry.passages.necks import Passage, Segment
+from utak.geometry.passages.walls import Walls
 
 TOUCH_TOLERANCE = 1e-6  # squares; convention: what an area loses at its edge, so that mere contact does not count
 

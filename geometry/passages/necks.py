@@ -14,10 +14,9 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools, Longs
-from geometry.kernels.jit import compiled
-from geometry.passages.walls import Walls
+from utak.geometry.kernels.arrays import XY, Bools, Longs
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.passages.walls import Walls
 
 Segment = tuple[XY, XY]
 DOOR_RATIO = 2.0  # ratio; convention: the floor on both sides of a door is at least so many times as wide as the door

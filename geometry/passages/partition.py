@@ -3,10 +3,9 @@
 from collections.abc import Iterable
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Floats, Ints, Labels
-from geometry.kernels.jit import bare, compiled
-from geometry.passages.necks import Passage
+from utak.geometry.kernels.arrays import Bools, Floats, Ints, Labels
+from utak.geometry.kernels.jit import bare, compiled
+from utak.geometry.passages.necks import Passage
 
 
 def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:

@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools, Floats, Longs
+from utak.geometry.kernels.arrays import Bools, Floats, Longs
 
 
 class Walls(NamedTuple):

@@ -7,8 +7,7 @@ from heapq import heappop, heappush
 from math import sqrt
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Floats, Square
+from utak.geometry.kernels.arrays import Bools, Floats, Square
 
 DIAGONAL = sqrt(2.0)
 STRAIGHT_STEPS = ((1, 0, 1.0), (0, 1, 1.0), (-1, 0, 1.0), (0, -1, 1.0))

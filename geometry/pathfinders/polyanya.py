@@ -10,12 +10,11 @@ path to reach the goal is the shortest. Dead ends are entered only when the goal
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, step_length, tighten_word
-from geometry.homotopy.strips import Strips, append_symbol, strip_at
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.heap import pop, push
-from geometry.kernels.jit import bare
+from utak.geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, step_length, tighten_word
+from utak.geometry.homotopy.strips import Strips, append_symbol, strip_at
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.heap import pop, push
+from utak.geometry.kernels.jit import bare
 
 CORNER_TOLERANCE = 1e-9  # squares; rounding: two paths to a corner that differ by less are equally long
 SPAN_WEST, SPAN_EAST, SPAN_LENGTH = 0, 1, 2  # columns of `Nodes.span`

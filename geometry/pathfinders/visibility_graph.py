@@ -7,9 +7,8 @@ when it stays in free space. It may touch walls but never passes between two blo
 from heapq import heappop, heappush
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import XY, Bools, Floats
+from utak.geometry.kernels.jit import bare
 
 
 def extreme_points(free: Bools) -> Floats:

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, Labels
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.arrays import Bools, Labels
+from utak.geometry.kernels.jit import compiled
 
 
 class Components(NamedTuple):

@@ -9,10 +9,9 @@ at once, many times as fast as an envelope. Far from them the envelope of distan
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Ints, SquaredDistances
-from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import (
+from utak.geometry.kernels.arrays import Ints, SquaredDistances
+from utak.geometry.kernels.jit import bare
+from utak.geometry.raster.distance_transform import (
     ColumnSteps,
     Sites,
     count_steps_to_nearest,

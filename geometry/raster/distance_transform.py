@@ -14,9 +14,8 @@ faster. A row's ``gap`` is the number of steps to the nearest blocked square in 
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, SquaredDistances
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Bools, SquaredDistances
+from utak.geometry.kernels.jit import bare
 
 ColumnSteps = NDArray[np.int16]  # numbers of steps along columns to a blocked square
 Sites = NDArray[np.int64]  # sites, or heights, of an envelope of parabolas, in half squares

@@ -7,9 +7,8 @@ unit square sweeps on the way must be free.
 import math
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.kernels.jit import compiled
 
 MIN_OVERLAP = 1e-9  # squares: two squares that overlap by less only touch; bounds rounding
 

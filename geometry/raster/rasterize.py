@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import compiled
-from geometry.motion.se2 import Motion
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.motion.se2 import Motion
 
 MIN_COVERED_AREA = 1e-9  # squares squared: a square covered by less is only touched; a convention, above rounding
 

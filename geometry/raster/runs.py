@@ -5,8 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools, Longs
+from utak.geometry.kernels.arrays import Bools, Longs
 
 
 class Runs(NamedTuple):

@@ -2,9 +2,8 @@
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Longs
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Longs
+from utak.geometry.kernels.jit import bare
 
 Codes = npt.NDArray[np.uint8]  # small numbers, one a square
 

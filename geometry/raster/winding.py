@@ -7,9 +7,8 @@
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Square
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.arrays import Square
+from utak.geometry.kernels.jit import compiled
 
 MAX_CROSSING_NUMBER = 2  # largest magnitude of a crossing number: one sheet for each number; a convention
 WINDING_STEP, WINDING_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)

@@ -9,12 +9,11 @@ the goal's chain to the goal, and 2m + 4 from the start to the goal along a chai
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.landmarks import Landmarks
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.heap import pop, push
-from geometry.kernels.jit import bare
-from geometry.skeleton.skeleton import States
+from utak.geometry.homotopy.landmarks import Landmarks
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.heap import pop, push
+from utak.geometry.kernels.jit import bare
+from utak.geometry.skeleton.skeleton import States
 
 PATH_SLACK = 1.05  # factor on the lower bound in biased searches; on random squares a third of the time, paths as good
 

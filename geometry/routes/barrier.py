@@ -11,15 +11,14 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.landmarks import locate
-from geometry.kernels.arrays import Bools, Ints, Labels
-from geometry.passages.necks import Passage
-from geometry.passages.partition import cut_floor
-from geometry.routes.layer import Layer
-from geometry.routes.lifting import direction_of
-from geometry.skeleton.graph import find, is_node
-from geometry.skeleton.skeleton import steepest, stride
+from utak.geometry.homotopy.landmarks import locate
+from utak.geometry.kernels.arrays import Bools, Ints, Labels
+from utak.geometry.passages.necks import Passage
+from utak.geometry.passages.partition import cut_floor
+from utak.geometry.routes.layer import Layer
+from utak.geometry.routes.lifting import direction_of
+from utak.geometry.skeleton.graph import find, is_node
+from utak.geometry.skeleton.skeleton import steepest, stride
 
 
 class Barrier(NamedTuple):

@@ -9,11 +9,10 @@ path better than the candidates.
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.landmarks import Landmarks
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.jit import bare
-from geometry.routes.astar import RouteQuery, Search, fill_goal_distances, find_path_to_goal
+from utak.geometry.homotopy.landmarks import Landmarks
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.jit import bare
+from utak.geometry.routes.astar import RouteQuery, Search, fill_goal_distances, find_path_to_goal
 
 # Chains; goal distances are first filled up to 1.1 shortest paths from here on, to 1.5 below; no measurement on record.
 LARGE_PATHGRAPH = 2000

@@ -5,14 +5,13 @@ from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.landmarks import Landmarks, compute_landmarks
-from geometry.homotopy.strips import Strips, find_strips
-from geometry.kernels.arrays import SquaredDistances
-from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import SkeletonGraph, contract
-from geometry.skeleton.skeleton import States, Words
-from geometry.skeleton.sweep import grow_all
+from utak.geometry.homotopy.landmarks import Landmarks, compute_landmarks
+from utak.geometry.homotopy.strips import Strips, find_strips
+from utak.geometry.kernels.arrays import SquaredDistances
+from utak.geometry.skeleton.chains import Chains
+from utak.geometry.skeleton.graph import SkeletonGraph, contract
+from utak.geometry.skeleton.skeleton import States, Words
+from utak.geometry.skeleton.sweep import grow_all
 
 RADIUS_ROUNDING = 1e-12  # share of a squared radius; derived: a clearance, squared again, gives the level it came from
 MAX_LEVEL = 2**31 - 1  # half squares, squared; derived: above every squared clearance of a screen

@@ -14,16 +14,15 @@ cannot be raised is a step of the skeleton, or of the steepest ascent to it from
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.funnel import Ends
-from geometry.homotopy.landmarks import locate
-from geometry.homotopy.strips import Strips
-from geometry.kernels.arrays import Ints
-from geometry.kernels.jit import bare
-from geometry.routes.layer import Layer
-from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import find, is_node
-from geometry.skeleton.skeleton import GROUPS, Flags, Heights, above, beside, higher_about, highest_of
+from utak.geometry.homotopy.funnel import Ends
+from utak.geometry.homotopy.landmarks import locate
+from utak.geometry.homotopy.strips import Strips
+from utak.geometry.kernels.arrays import Ints
+from utak.geometry.kernels.jit import bare
+from utak.geometry.routes.layer import Layer
+from utak.geometry.skeleton.chains import Chains
+from utak.geometry.skeleton.graph import find, is_node
+from utak.geometry.skeleton.skeleton import GROUPS, Flags, Heights, above, beside, higher_about, highest_of
 
 TRAIL_OVERFLOW = -1  # returned when the trail has no room
 DROPPED = -1  # the cell of a link that was dropped from its path

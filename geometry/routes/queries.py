@@ -6,20 +6,25 @@ from math import hypot, inf, nan
 from typing import cast
 
 import numpy as np
-
-from geometry.homotopy.funnel import Ends
-from geometry.homotopy.landmarks import compute_landmarks
-from geometry.homotopy.portals import crossings_of, join_words, word_of_cells, word_of_line
-from geometry.homotopy.strips import find_strips
-from geometry.kernels.arrays import XY, Ints
-from geometry.passages.necks import Passage
-from geometry.pathfinders.polyanya import NO_PATH, SEARCH_OVERFLOW, PolyanyaSearch, new_polyanya_search, shortest_line
-from geometry.raster.exact_clearance import disc_stays_clear
-from geometry.routes.barrier import Barrier, build_barrier, path_over_cells, path_to_skeleton
-from geometry.routes.layer import Layer
-from geometry.routes.lifting import Lifted, Trail, lift_to_skeleton, lift_word, new_trail
-from geometry.routes.route import Route, polyline_length, routes_of_answers
-from geometry.routes.router import (
+from utak.geometry.homotopy.funnel import Ends
+from utak.geometry.homotopy.landmarks import compute_landmarks
+from utak.geometry.homotopy.portals import crossings_of, join_words, word_of_cells, word_of_line
+from utak.geometry.homotopy.strips import find_strips
+from utak.geometry.kernels.arrays import XY, Ints
+from utak.geometry.passages.necks import Passage
+from utak.geometry.pathfinders.polyanya import (
+    NO_PATH,
+    SEARCH_OVERFLOW,
+    PolyanyaSearch,
+    new_polyanya_search,
+    shortest_line,
+)
+from utak.geometry.raster.exact_clearance import disc_stays_clear
+from utak.geometry.routes.barrier import Barrier, build_barrier, path_over_cells, path_to_skeleton
+from utak.geometry.routes.layer import Layer
+from utak.geometry.routes.lifting import Lifted, Trail, lift_to_skeleton, lift_word, new_trail
+from utak.geometry.routes.route import Route, polyline_length, routes_of_answers
+from utak.geometry.routes.router import (
     ROUTER_OVERFLOW,
     RouterBuffers,
     RoutingData,
@@ -27,8 +32,8 @@ from geometry.routes.router import (
     new_router_buffers,
     routing_data,
 )
-from geometry.routes.tighten import tight_route
-from geometry.skeleton.chains import Chains
+from utak.geometry.routes.tighten import tight_route
+from utak.geometry.skeleton.chains import Chains
 
 # Paths tried beyond those wanted, since their order changes when they are pulled tight; see docs/geometry.md.
 EXTRA_PATHS = 8  # on pathgraphs of at most SMALL_PATHGRAPH chains

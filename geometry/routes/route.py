@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats
-from geometry.routes.router import RouteAnswers
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.routes.router import RouteAnswers
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,17 +3,16 @@
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, tighten_word
-from geometry.homotopy.landmarks import Anchor, Landmarks, add_chain, add_word, ascend, locate
-from geometry.homotopy.strips import Strips
-from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.jit import bare
-from geometry.routes.astar import RouteQuery, Search, new_search
-from geometry.routes.k_shortest import PathStore, k_shortest_paths, new_path_store
-from geometry.routes.layer import Layer
-from geometry.skeleton.chains import Chains
-from geometry.skeleton.skeleton import Flags, Heights, States
+from utak.geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, tighten_word
+from utak.geometry.homotopy.landmarks import Anchor, Landmarks, add_chain, add_word, ascend, locate
+from utak.geometry.homotopy.strips import Strips
+from utak.geometry.kernels.arrays import Floats, Ints
+from utak.geometry.kernels.jit import bare
+from utak.geometry.routes.astar import RouteQuery, Search, new_search
+from utak.geometry.routes.k_shortest import PathStore, k_shortest_paths, new_path_store
+from utak.geometry.routes.layer import Layer
+from utak.geometry.skeleton.chains import Chains
+from utak.geometry.skeleton.skeleton import Flags, Heights, States
 
 
 class RouteAnswers(NamedTuple):

@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
-
-from geometry.homotopy.funnel import Ends, measure_line, new_funnel, tighten_word
-from geometry.homotopy.portals import crossings_of, join_words
-from geometry.homotopy.strips import Strips, strip_at
-from geometry.kernels.arrays import Ints
-from geometry.routes.layer import Layer
-from geometry.routes.route import Route
+from utak.geometry.homotopy.funnel import Ends, measure_line, new_funnel, tighten_word
+from utak.geometry.homotopy.portals import crossings_of, join_words
+from utak.geometry.homotopy.strips import Strips, strip_at
+from utak.geometry.kernels.arrays import Ints
+from utak.geometry.routes.layer import Layer
+from utak.geometry.routes.route import Route
 
 
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:

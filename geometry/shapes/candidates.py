@@ -3,10 +3,9 @@
 import math
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import compiled
-from geometry.shapes.misfit import (
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.shapes.misfit import (
     BRICK_CLASS,
     DISC_CLASS,
     ELL_CLASS,

@@ -17,11 +17,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools, Floats
-from geometry.shapes import misfit
-from geometry.shapes.candidates import best_turned_shape, best_whole_shape
-from geometry.shapes.shape_likelihood import parameter_volume
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.shapes import misfit
+from utak.geometry.shapes.candidates import best_turned_shape, best_whole_shape
+from utak.geometry.shapes.shape_likelihood import parameter_volume
 
 CLASSES = {
     "square": misfit.SQUARE_CLASS,

@@ -13,9 +13,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import compiled
 
 Image = npt.NDArray[np.int8]
 IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN = 0, 1, 2  # states of a square of an image

@@ -13,11 +13,10 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats
-from geometry.kernels.jit import compiled
-from geometry.shapes.candidates import initial_steps
-from geometry.shapes.misfit import (
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.shapes.candidates import initial_steps
+from utak.geometry.shapes.misfit import (
     BRICK_CLASS,
     DISC_CLASS,
     ELL_CLASS,

@@ -7,9 +7,8 @@ lowest bits, and no sum ever carries to the next byte.
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Ints
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Ints
+from utak.geometry.kernels.jit import bare
 
 Eights = NDArray[np.int64]
 """(words,) states of eight cells each, the first in the lowest byte; bytes beyond the last cell are 0."""

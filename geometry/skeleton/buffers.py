@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import SquaredDistances
-from geometry.skeleton.skeleton import Words
+from utak.geometry.kernels.arrays import SquaredDistances
+from utak.geometry.skeleton.skeleton import Words
 
 Adviser = Callable[[int, int, int], int]
 """Takes address, length in bytes and the number of the advice; returns 0 when the system follows it."""

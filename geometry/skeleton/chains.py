@@ -3,11 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Ints
-from geometry.kernels.jit import bare
-from geometry.skeleton.graph import SkeletonGraph, other_direction
-from geometry.skeleton.skeleton import Flags, States, stride
+from utak.geometry.kernels.arrays import Ints
+from utak.geometry.kernels.jit import bare
+from utak.geometry.skeleton.graph import SkeletonGraph, other_direction
+from utak.geometry.skeleton.skeleton import Flags, States, stride
 
 
 class Chains(NamedTuple):

@@ -11,12 +11,11 @@ Directions are numbered counter-clockwise from the east: 0 east, 1 north, 2 west
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Ints, SquaredDistances
-from geometry.kernels.jit import bare
-from geometry.skeleton.bit_parallel import Eights, count_nodes, list_nodes, node_number
-from geometry.skeleton.lowest_cells import MIN_NOTES, Notes, find_lowest, lowest_of, new_notes
-from geometry.skeleton.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
+from utak.geometry.kernels.arrays import Ints, SquaredDistances
+from utak.geometry.kernels.jit import bare
+from utak.geometry.skeleton.bit_parallel import Eights, count_nodes, list_nodes, node_number
+from utak.geometry.skeleton.lowest_cells import MIN_NOTES, Notes, find_lowest, lowest_of, new_notes
+from utak.geometry.skeleton.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
 NOTES_CHECK_STEPS = 4  # steps of a walk between two checks that there is room for as many notes more (a convention)
 WORDS_AHEAD = 1 << 14  # words of states listed ahead of the walk: twice as many (256 kB) fit into a core's own cache

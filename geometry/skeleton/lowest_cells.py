@@ -8,9 +8,8 @@ the clearances of many notes are fetched together.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import Ints, SquaredDistances
-from geometry.kernels.jit import bare
+from utak.geometry.kernels.arrays import Ints, SquaredDistances
+from utak.geometry.kernels.jit import bare
 
 Notes = Ints
 

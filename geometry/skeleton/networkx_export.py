@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from geometry.skeleton.pathgraph_arrays import PathgraphArrays
+from utak.geometry.skeleton.pathgraph_arrays import PathgraphArrays
 
 if TYPE_CHECKING:
     import networkx

@@ -7,11 +7,10 @@ every chain again and writes the places of its cells straight into one block of 
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats, Ints, SquaredDistances
-from geometry.kernels.jit import bare
-from geometry.skeleton.graph import SkeletonGraph
-from geometry.skeleton.skeleton import LINKS, Flags, Heights, States
+from utak.geometry.kernels.arrays import Floats, Ints, SquaredDistances
+from utak.geometry.kernels.jit import bare
+from utak.geometry.skeleton.graph import SkeletonGraph
+from utak.geometry.skeleton.skeleton import LINKS, Flags, Heights, States
 
 
 class PathgraphArrays(NamedTuple):
@@ -57,7 +56,7 @@ class PathgraphArrays(NamedTuple):
     A floor around one blocked square has one node, and one edge that leads around the square back to it:
 
     >>> import numpy as np
-    >>> from geometry import Screen
+    >>> from utak.geometry import Screen
     >>> free = np.ones((3, 3), dtype=bool)
     >>> free[1, 1] = False
     >>> graph = Screen(free).pathgraph_arrays

@@ -6,12 +6,11 @@ band while it is in the processor's cache.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, SquaredDistances
-from geometry.kernels.jit import bare
-from geometry.raster.distance_rows import RowWindow, fill_distance_rows, new_row_window
-from geometry.raster.distance_transform import ColumnSteps, count_steps_south
-from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
+from utak.geometry.kernels.arrays import Bools, SquaredDistances
+from utak.geometry.kernels.jit import bare
+from utak.geometry.raster.distance_rows import RowWindow, fill_distance_rows, new_row_window
+from utak.geometry.raster.distance_transform import ColumnSteps, count_steps_south
+from utak.geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
 
 BAND_CELLS = 1 << 16  # about so many cells in a band: of 3 to 5 bytes each, which fit into a core's own cache
 

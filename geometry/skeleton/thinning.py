@@ -8,10 +8,9 @@ of cells, but for the ends of lines.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Ints, SquaredDistances
-from geometry.kernels.jit import bare
-from geometry.skeleton.skeleton import KINDS, States, beside
+from utak.geometry.kernels.arrays import Bools, Ints, SquaredDistances
+from utak.geometry.kernels.jit import bare
+from utak.geometry.skeleton.skeleton import KINDS, States, beside
 
 
 def thin_skeleton(square: SquaredDistances, state: States) -> Bools:

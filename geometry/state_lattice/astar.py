@@ -9,11 +9,10 @@ side. Ties are broken by node number: the same question has the same answer.
 import heapq
 
 import numpy as np
-
-from geometry.kernels.arrays import Longs
-from geometry.kernels.jit import compiled
-from geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION
-from geometry.state_lattice.lattice import (
+from utak.geometry.kernels.arrays import Longs
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION
+from utak.geometry.state_lattice.lattice import (
     COMMAND_COST,
     REGRASP_COST,
     WALK_COST,

@@ -17,12 +17,11 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity
-
-from geometry.kernels.arrays import Bools, Floats, Longs
-from geometry.kernels.jit import compiled
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.time_of_impact import first_turn_skin_hit
-from geometry.raster.rasterize import squares
+from utak.geometry.kernels.arrays import Bools, Floats, Longs
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.time_of_impact import first_turn_skin_hit
+from utak.geometry.raster.rasterize import squares
 
 PUSH_DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 """Steps (columns, rows) of a push, counter-clockwise from the east: a quarter turn is two further in this order."""

@@ -8,11 +8,10 @@ It never exceeds the true cost: an admissible heuristic.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Longs
-from geometry.kernels.bucket_queue import Queue, new_queue, put, take
-from geometry.kernels.jit import compiled
-from geometry.state_lattice.lattice import COMMAND_COST, Costs, StateLattice, place_after_turn, turn_cost
+from utak.geometry.kernels.arrays import Bools, Longs
+from utak.geometry.kernels.bucket_queue import Queue, new_queue, put, take
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.state_lattice.lattice import COMMAND_COST, Costs, StateLattice, place_after_turn, turn_cost
 
 NO_DIRECTION = 8  # stands for the direction of a body that lies, in place of 0..7
 COST_UNREACHABLE = 2**30  # above every cost to go

@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Bools, Longs
-from geometry.kernels.jit import compiled
-from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
+from utak.geometry.kernels.arrays import Bools, Longs
+from utak.geometry.kernels.jit import compiled
+from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
 
 Costs = npt.NDArray[np.int32]
 PushCosts = npt.NDArray[np.int8]  # of single squares, which are small

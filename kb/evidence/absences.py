@@ -2,18 +2,18 @@
 
 from collections.abc import Iterator, Sequence
 
-from kb.evidence.beliefs import FactExplainer, plain_fact
-from kb.evidence.inputs import Given, input_reason
-from kb.evidence.plans import TASK_PLAN_NAMES, planned_choice
-from kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
-from kb.evidence.reason import Reason, ReasonKind
-from kb.explanation.query_absence import explain_query_absence
-from kb.explanation.values import Absence
-from kb.explanation.whynot import explain_absence
-from kb.language.atoms import atom_parts
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.vocabulary import BELIEF_PREDICATES, ROBOT, Signature
-from kb.tracing.decisions import SolverCall
+from utak.kb.evidence.beliefs import FactExplainer, plain_fact
+from utak.kb.evidence.inputs import Given, input_reason
+from utak.kb.evidence.plans import TASK_PLAN_NAMES, planned_choice
+from utak.kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.explanation.query_absence import explain_query_absence
+from utak.kb.explanation.values import Absence
+from utak.kb.explanation.whynot import explain_absence
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, ROBOT, Signature
+from utak.kb.tracing.decisions import SolverCall
 
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
 SURE_KIND = {"object": 95, "verge": 99, "floor": 100, "utak": 100}  # percent: the surest that interpretation.lp derives

@@ -3,23 +3,23 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from kb.evidence.inputs import Given, input_reason, squares_reason
-from kb.evidence.plans import PLAN_ENCODING, TASK_PLAN_NAMES, plan_fact_reason
-from kb.evidence.proving import words_of
-from kb.evidence.reason import Reason, ReasonKind
-from kb.evidence.record import Record
-from kb.evidence.witness import (
+from utak.kb.evidence.inputs import Given, input_reason, squares_reason
+from utak.kb.evidence.plans import PLAN_ENCODING, TASK_PLAN_NAMES, plan_fact_reason
+from utak.kb.evidence.proving import words_of
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.record import Record
+from utak.kb.evidence.witness import (
     command_reason,
     felt_reason,
     line_squares,
     node_squares,
     seen_reason,
 )
-from kb.language.atoms import atom_parts
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.vocabulary import ROBOT, thing_positions
-from kb.tracing.decisions import SolverCall
-from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.vocabulary import ROBOT, thing_positions
+from utak.kb.tracing.decisions import SolverCall
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
 
 class AnswerProver(Protocol):

@@ -4,15 +4,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kb.evidence.beliefs import FactExplainer
-from kb.evidence.plans import plan_step_reasons
-from kb.evidence.reason import Reason, ReasonKind
-from kb.evidence.witness import command_reason
-from kb.language.atoms import atom_parts
-from kb.language.vocabulary import ROBOT, check_goal_table
-from kb.task.task import WRAPPING_GOALS
-from kb.tracing.decisions import SolverCall
-from kb.world.model import ROOT_NODE
+from utak.kb.evidence.beliefs import FactExplainer
+from utak.kb.evidence.plans import plan_step_reasons
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.witness import command_reason
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.vocabulary import ROBOT, check_goal_table
+from utak.kb.task.task import WRAPPING_GOALS
+from utak.kb.tracing.decisions import SolverCall
+from utak.kb.world.model import ROOT_NODE
 
 AGENDA = "agenda"  # the encoding that chooses activities and verdicts
 CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from geometry.kernels.arrays import Square
-from kb.evidence.proving import words_of
-from kb.evidence.reason import Reason, ReasonKind
-from kb.evidence.record import Record
-from kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
-from kb.language.atoms import atom_parts
-from kb.tracing.decisions import SolverCall
-from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
+from utak.geometry.kernels.arrays import Square
+from utak.kb.evidence.proving import words_of
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.record import Record
+from utak.kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
+from utak.kb.language.atoms import atom_parts
+from utak.kb.tracing.decisions import SolverCall
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
 TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "kept"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
-from kb.evidence.proving import words_of
-from kb.evidence.reason import Reason, ReasonKind
-from kb.evidence.record import Record
-from kb.language.atoms import atom_parts
-from kb.language.vocabulary import PLAN_PREDICATES, ROBOT
-from kb.tracing.decisions import SolverCall
-from kb.world.stated_plan import SETTLING_WORDS, circumstance_in_words, stated_plan
+from utak.kb.evidence.proving import words_of
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.record import Record
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.vocabulary import PLAN_PREDICATES, ROBOT
+from utak.kb.tracing.decisions import SolverCall
+from utak.kb.world.stated_plan import SETTLING_WORDS, circumstance_in_words, stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
@@ -20,7 +20,7 @@ COUNTED_FROM_PRESENT_STEP = frozenset({"takes", "verified"})
 
 
 class PlanExplainer(Protocol):
-    """Explains facts and answers of encodings, as `kb.evidence.beliefs.FactExplainer` does."""
+    """Explains facts and answers of encodings, as `utak.kb.evidence.beliefs.FactExplainer` does."""
 
     record: Record
 

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 
-from kb.evidence.reason import Reason, ReasonKind
-from kb.explanation.belief import explain_query_atom
-from kb.explanation.programs import decision_program
-from kb.explanation.proof import explain_decision
-from kb.explanation.values import ProofNode, RivalChoice
-from kb.explanation.wording import atom_words
-from kb.language.diagnostics import Problem, SourceSpan, did_you_mean
-from kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature
-from kb.reasoning.user_rules import read_rules
-from kb.tracing.decisions import SolverCall
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.explanation.belief import explain_query_atom
+from utak.kb.explanation.programs import decision_program
+from utak.kb.explanation.proof import explain_decision
+from utak.kb.explanation.values import ProofNode, RivalChoice
+from utak.kb.explanation.wording import atom_words
+from utak.kb.language.diagnostics import Problem, SourceSpan, did_you_mean
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature
+from utak.kb.reasoning.user_rules import read_rules
+from utak.kb.tracing.decisions import SolverCall
 
 KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
     "derived": ReasonKind.RULE,
@@ -29,7 +29,7 @@ KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
 class EncodingProver:
     """Explains the answers of encodings by the rules that derived them."""
 
-    # Satisfies `kb.evidence.beliefs.AnswerProver`.
+    # Satisfies `utak.kb.evidence.beliefs.AnswerProver`.
 
     def __init__(self, rule_files: Sequence[str] = ()) -> None:
         self._rule_files = tuple(rule_files)

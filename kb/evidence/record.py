@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from geometry.kernels.arrays import XY, Square
-from kb.perception.frame import Frame
-from kb.tracing.decisions import SolverCall
+from utak.geometry.kernels.arrays import XY, Square
+from utak.kb.perception.frame import Frame
+from utak.kb.tracing.decisions import SolverCall
 
 RecordLine = Mapping[str, Any]  # the JSON object of one step of an episode
 

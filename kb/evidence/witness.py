@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Square
-from geometry.raster.rasterize import squares as covered_squares
-from kb.body import DIRECTIONS
-from kb.evidence.reason import Reason, ReasonKind
-from kb.evidence.record import Record, RecordedStep
-from kb.evidence.sightings import most_telling, sightings
-from kb.language.vocabulary import MAX_TABLE_SIDE
-from kb.perception.frame import ADJACENT_OFFSETS, Frame
-from kb.world.model import FACT_UNITS_PER_SQUARE
+from utak.geometry.kernels.arrays import XY, Square
+from utak.geometry.raster.rasterize import squares as covered_squares
+from utak.kb.body import DIRECTIONS
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.record import Record, RecordedStep
+from utak.kb.evidence.sightings import most_telling, sightings
+from utak.kb.language.vocabulary import MAX_TABLE_SIDE
+from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 
 SHOWN_CELLS = 4  # cells that one reason names at most, the most telling ones; a convention
 SAMPLED_SQUARES = 12  # squares of an outline or a line at which cells are looked up, at most; a convention

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from kb.explanation.programs import (
+from utak.kb.explanation.programs import (
     BELIEF,
     OBJECT_RULE,
     ExplanationError,
@@ -14,15 +14,15 @@ from kb.explanation.programs import (
     texts_of,
     words_of_users,
 )
-from kb.explanation.support import Support, supports_of
-from kb.explanation.tree import ProofTrees
-from kb.explanation.values import Proof, RuleInstance, RuleText
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.query import request_entries
-from kb.reasoning.rulebook import Statement
-from kb.reasoning.sentences import fill
-from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
-from kb.tracing.syntax import JsonValues
+from utak.kb.explanation.support import Support, supports_of
+from utak.kb.explanation.tree import ProofTrees
+from utak.kb.explanation.values import Proof, RuleInstance, RuleText
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.query import request_entries
+from utak.kb.reasoning.rulebook import Statement
+from utak.kb.reasoning.sentences import fill
+from utak.kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
+from utak.kb.tracing.syntax import JsonValues
 
 OBJECT_TEXT = RuleText("queries", 1, 1, OBJECT_RULE, "rule", "{N} is believed to be an object, with {C} percent.")
 

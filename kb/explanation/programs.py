@@ -8,15 +8,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.explanation.values import RuleInstance, RuleText
-from kb.language.reader import facts_from_text
-from kb.language.source_text import Source, read_source, source_from_bytes
-from kb.reasoning.encodings import all_encodings, encoding_files, encoding_path
-from kb.reasoning.rulebook import Statement
-from kb.reasoning.sentences import PredicateWords, RuleWords, fill, read_sentences
-from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
-from kb.tracing.requests import respond
-from kb.tracing.syntax import JsonValues, ProgramPart
+from utak.kb.explanation.values import RuleInstance, RuleText
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.source_text import Source, read_source, source_from_bytes
+from utak.kb.reasoning.encodings import all_encodings, encoding_files, encoding_path
+from utak.kb.reasoning.rulebook import Statement
+from utak.kb.reasoning.sentences import PredicateWords, RuleWords, fill, read_sentences
+from utak.kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
+from utak.kb.tracing.requests import respond
+from utak.kb.tracing.syntax import JsonValues, ProgramPart
 
 HELPING_PREFIX = "trace__"  # begins the names of the atoms that helping rules derive
 BELIEF = "belief"  # the encoding that declares the believed facts, over which the rules of queries reason

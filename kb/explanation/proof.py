@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from kb.explanation.programs import DecisionProgram, ExplanationError, canonical, decision_program
-from kb.explanation.rivals import rivals_of
-from kb.explanation.support import Support, supports_of
-from kb.explanation.tree import ProofTrees
-from kb.explanation.values import Proof, ProofNode, RivalChoice
+from utak.kb.explanation.programs import DecisionProgram, ExplanationError, canonical, decision_program
+from utak.kb.explanation.rivals import rivals_of
+from utak.kb.explanation.support import Support, supports_of
+from utak.kb.explanation.tree import ProofTrees
+from utak.kb.explanation.values import Proof, ProofNode, RivalChoice
 
 
 class TracedDecision:

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from itertools import count
 
-from kb.explanation.belief import explain_query_atom, query_response
-from kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
-from kb.explanation.values import Absence, Proof
-from kb.explanation.whynot import change_in_words, is_sensible
-from kb.language.diagnostics import SourceSpan
-from kb.language.terms import Number, Symbol, Term
-from kb.language.vocabulary import BELIEF_PREDICATES, CORNER_NAMES, SHAPE_CLASSES
+from utak.kb.explanation.belief import explain_query_atom, query_response
+from utak.kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
+from utak.kb.explanation.values import Absence, Proof
+from utak.kb.explanation.whynot import change_in_words, is_sensible
+from utak.kb.language.diagnostics import SourceSpan
+from utak.kb.language.terms import Number, Symbol, Term
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, CORNER_NAMES, SHAPE_CLASSES
 
 NUMBERED_LETTERS = "odrjl"  # of objects, doors, rooms, junctions and links, which have a number behind them
 

@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from kb.explanation.programs import DecisionProgram
-from kb.explanation.values import Price, RivalChoice
-from kb.tracing.syntax import JsonValues
+from utak.kb.explanation.programs import DecisionProgram
+from utak.kb.explanation.values import Price, RivalChoice
+from utak.kb.tracing.syntax import JsonValues
 
 MAX_PRICES_NAMED = 3  # prices that the sentence of a rival names for each side; a convention
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from kb.explanation.programs import RuleUnit
-from kb.tracing.syntax import JsonValues
+from utak.kb.explanation.programs import RuleUnit
+from utak.kb.tracing.syntax import JsonValues
 
 LiteralValue = str | list[str]  # an atom, or the sides of a comparison or the bounds of an aggregate
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from kb.explanation.support import (
+from utak.kb.explanation.support import (
     CountedElement,
     LiteralValue,
     Support,
@@ -11,8 +11,8 @@ from kb.explanation.support import (
     founded_supports,
     positive_atoms,
 )
-from kb.explanation.values import ProofNode, RivalChoice, RuleInstance
-from kb.explanation.wording import (
+from utak.kb.explanation.values import ProofNode, RivalChoice, RuleInstance
+from utak.kb.explanation.wording import (
     WordsByPredicate,
     absent_words,
     aggregate_claim,
@@ -25,7 +25,7 @@ from kb.explanation.wording import (
     substituted,
     variables_in,
 )
-from kb.tracing.syntax import JsonValues
+from utak.kb.tracing.syntax import JsonValues
 
 
 class ProofTrees:

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from kb.explanation.programs import DecisionProgram, ExplanationError, canonical, decision_program
-from kb.explanation.proof import TracedDecision, traced_decision
-from kb.explanation.rivals import rivals_of
-from kb.explanation.values import Absence, Proof
-from kb.explanation.wording import absent_words, atom_words
-from kb.language.atoms import atom_parts
-from kb.language.reader import facts_from_text
-from kb.reasoning.interfaces import USER_RULE_INTERFACES
+from utak.kb.explanation.programs import DecisionProgram, ExplanationError, canonical, decision_program
+from utak.kb.explanation.proof import TracedDecision, traced_decision
+from utak.kb.explanation.rivals import rivals_of
+from utak.kb.explanation.values import Absence, Proof
+from utak.kb.explanation.wording import absent_words, atom_words
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.reader import facts_from_text
+from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
 
 
 def explain_absence(

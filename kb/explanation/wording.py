@@ -3,10 +3,10 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from kb.explanation.support import CountedElement, LiteralValue, aggregate_value
-from kb.language.atoms import atom_parts
-from kb.reasoning.sentences import PredicateWords, fill
-from kb.tracing.syntax import ANY_NAME, JsonValues
+from utak.kb.explanation.support import CountedElement, LiteralValue, aggregate_value
+from utak.kb.language.atoms import atom_parts
+from utak.kb.reasoning.sentences import PredicateWords, fill
+from utak.kb.tracing.syntax import ANY_NAME, JsonValues
 
 WordsByPredicate = Mapping[tuple[str, int], PredicateWords]
 SIGN_WORDS = {

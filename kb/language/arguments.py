@@ -4,8 +4,8 @@ import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from kb.language.diagnostics import SourceSpan, did_you_mean
-from kb.language.terms import Number, Symbol, Term, Text
+from utak.kb.language.diagnostics import SourceSpan, did_you_mean
+from utak.kb.language.terms import Number, Symbol, Term, Text
 
 DECIMAL_FORM = re.compile(r"[-+]?(?:[0-9]{1,19}(?:\.[0-9]{0,19})?|\.[0-9]{1,19})")  # a decimal number without exponent
 
@@ -121,7 +121,7 @@ def wkt_argument(name: str, *kinds: str) -> ArgumentType:
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is a quoted shape of an accepted kind."""
-        from kb.language.wkt import WktError, parse_wkt
+        from utak.kb.language.wkt import WktError, parse_wkt
 
         if not isinstance(term, Text):
             return Complaint(

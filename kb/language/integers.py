@@ -6,9 +6,9 @@ clingo's integers have 32 bits, and it wraps greater ones without a message. So 
 import re
 from collections.abc import Iterable, Iterator
 
-from kb.language.diagnostics import Problem, SourceSpan
-from kb.language.source_text import Source
-from kb.language.tokens import Token, tokenize
+from utak.kb.language.diagnostics import Problem, SourceSpan
+from utak.kb.language.source_text import Source
+from utak.kb.language.tokens import Token, tokenize
 
 MIN_INT32, MAX_INT32 = -(2**31), 2**31 - 1  # the range of clingo's integers
 INTEGER_BASES = {"0x": 16, "0o": 8, "0b": 2}  # by the prefix of a literal of gringo's language

@@ -15,10 +15,10 @@ latter can be nested.
 import re
 from pathlib import Path
 
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
-from kb.language.source_text import Source, read_source, source_from_bytes
-from kb.language.terms import Fact, Number, Symbol, Term, Text
-from kb.language.tokens import Token, tokenize
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
+from utak.kb.language.source_text import Source, read_source, source_from_bytes
+from utak.kb.language.terms import Fact, Number, Symbol, Term, Text
+from utak.kb.language.tokens import Token, tokenize
 
 MAX_TERM_DEPTH = 64  # terms nested in each other (docs/files.md)
 INT32_RANGE = range(-(2**31), 2**31)  # the range of clingo's integers

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.operating_system import READ_FLAGS
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.operating_system import READ_FLAGS
 
 MAX_FILE_BYTES = 4_000_000  # bytes of a user's file (docs/files.md)
 PIECE_BYTES = 1 << 20  # bytes that are read at once; a convention

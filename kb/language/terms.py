@@ -5,7 +5,7 @@ Two terms are equal when their content is equal; their places are not compared.
 
 from dataclasses import dataclass, field
 
-from kb.language.diagnostics import SourceSpan
+from utak.kb.language.diagnostics import SourceSpan
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kb.language.diagnostics import Problem, SourceSpan
-from kb.language.source_text import Source
+from utak.kb.language.diagnostics import Problem, SourceSpan
+from utak.kb.language.source_text import Source
 
 # Every character of a text belongs to exactly one match; the name of its group is its kind.
 TOKEN_PATTERN = re.compile(

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
-from kb.language.arguments import (
+from utak.kb.language.arguments import (
     COLOUR_ARGUMENT,
     NAME_ARGUMENT,
     ArgumentType,
@@ -16,9 +16,9 @@ from kb.language.arguments import (
     wkt_argument,
     word_argument,
 )
-from kb.language.diagnostics import Problem, did_you_mean
-from kb.language.source_text import Source
-from kb.language.terms import Fact, Symbol, Term
+from utak.kb.language.diagnostics import Problem, did_you_mean
+from utak.kb.language.source_text import Source
+from utak.kb.language.terms import Fact, Symbol, Term
 
 Signature = tuple[str, int]  # the name of a predicate and its number of arguments
 Vocabulary = Mapping[str, tuple[ArgumentType, ...]]  # argument types by predicate

@@ -5,25 +5,24 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-
-from geometry.motion.se2 import Motion, Rotate
-from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, other_outcomes, predicted_outcome
-from kb.localisation.hypotheses.contacts import (
+from utak.geometry.motion.se2 import Motion, Rotate
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, other_outcomes, predicted_outcome
+from utak.kb.localisation.hypotheses.contacts import (
     NO_SQUARES,
     ContactHypothesis,
     Obstructions,
     contact_outcomes,
     suspected_squares,
 )
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
-from kb.localisation.hypotheses.what_if import Surprise, agreeing_hypotheses, count_clashes
-from kb.localisation.propose.blocked import has_whole_way, possible_ends
-from kb.localisation.propose.contradicted_motion import overlooked_contact
-from kb.localisation.propose.held_object_state import lean_on_obstacle, object_after
-from kb.localisation.propose.larger_object import larger_objects
-from kb.localisation.propose.parted_object import parted_objects
-from kb.localisation.score import (
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from utak.kb.localisation.hypotheses.what_if import Surprise, agreeing_hypotheses, count_clashes
+from utak.kb.localisation.propose.blocked import has_whole_way, possible_ends
+from utak.kb.localisation.propose.contradicted_motion import overlooked_contact
+from utak.kb.localisation.propose.held_object_state import lean_on_obstacle, object_after
+from utak.kb.localisation.propose.larger_object import larger_objects
+from utak.kb.localisation.propose.parted_object import parted_objects
+from utak.kb.localisation.score import (
     Judgement,
     SearchBudget,
     choose,
@@ -34,9 +33,9 @@ from kb.localisation.score import (
     propose_frame,
     residual_at,
 )
-from kb.localisation.state import TrackerState
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square
+from utak.kb.localisation.state import TrackerState
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square
 
 MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts as clear of obstacles; tuned
 

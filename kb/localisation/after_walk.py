@@ -5,10 +5,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
-from geometry.motion.se2 import Translate
-from kb.body import Command, Move
-from kb.localisation.hypotheses.explanation import Explanation, reestimated_explanations
-from kb.localisation.hypotheses.frames import (
+from utak.geometry.motion.se2 import Translate
+from utak.kb.body import Command, Move
+from utak.kb.localisation.hypotheses.explanation import Explanation, reestimated_explanations
+from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,
     PLAUSIBLE_COST,
     FieldRanges,
@@ -21,13 +21,13 @@ from kb.localisation.hypotheses.frames import (
     is_cramped,
     prune_hypotheses,
 )
-from kb.localisation.hypotheses.map_prior import weigh_hypotheses
-from kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_two_walks, reestimate_walk
-from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
-from kb.localisation.hypotheses.walk_outcomes import observation_places, slipped_ends
-from kb.localisation.propose.blocked import has_whole_way, possible_ends
-from kb.localisation.propose.origin import blocked_walks_with_origin
-from kb.localisation.score import (
+from utak.kb.localisation.hypotheses.map_prior import weigh_hypotheses
+from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_two_walks, reestimate_walk
+from utak.kb.localisation.hypotheses.remap import ReplayPrefixes, remap
+from utak.kb.localisation.hypotheses.walk_outcomes import observation_places, slipped_ends
+from utak.kb.localisation.propose.blocked import has_whole_way, possible_ends
+from utak.kb.localisation.propose.origin import blocked_walks_with_origin
+from utak.kb.localisation.score import (
     Judgement,
     SearchBudget,
     choose,
@@ -39,8 +39,8 @@ from kb.localisation.score import (
     residual_at,
     with_chance,
 )
-from kb.localisation.state import TrackerState
-from kb.perception.frame import Frame
+from utak.kb.localisation.state import TrackerState
+from utak.kb.perception.frame import Frame
 
 MAX_REPLAYED_OBSERVATIONS = 120  # observations replayed to try frames, for one choice: bounds its time; tuned
 MIN_TRIED_FRAMES = 6  # frames that are tried at least, however many observations there are; tuned

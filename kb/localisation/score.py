@@ -7,20 +7,20 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
-from kb.localisation.hypotheses.explanation import Explanation, cheapest
-from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
-from kb.localisation.hypotheses.map_prior import UNTRIED_COST
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.localisation.propose import blocked
-from kb.localisation.propose.earlier_motion import (
+from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
+from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
+from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.localisation.propose import blocked
+from utak.kb.localisation.propose.earlier_motion import (
     ReestimatedMotion,
     reestimate_motions,
     reestimate_with_origin,
 )
-from kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
-from kb.localisation.state import TrackerState
-from kb.objects.held_object import HeldObject
+from utak.kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
+from utak.kb.localisation.state import TrackerState
+from utak.kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
 MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise

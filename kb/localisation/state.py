@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from kb.body import Command
-from kb.localisation.hypotheses.frames import (
+from utak.kb.body import Command
+from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
     FieldRanges,
     FrameHypothesis,
@@ -17,12 +17,12 @@ from kb.localisation.hypotheses.frames import (
     Position,
     origin_leeway,
 )
-from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, squares_passed
-from kb.localisation.hypotheses.what_if import Surprise
-from kb.mapping.completions import Completions
-from kb.mapping.occupancy import FREE, OPEN, OccupancyMap
-from kb.objects.held_object import HeldObject, Square
-from kb.perception.frame import CENTRE, Frame
+from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, squares_passed
+from utak.kb.localisation.hypotheses.what_if import Surprise
+from utak.kb.mapping.completions import Completions
+from utak.kb.mapping.occupancy import FREE, OPEN, OccupancyMap
+from utak.kb.objects.held_object import HeldObject, Square
+from utak.kb.perception.frame import CENTRE, Frame
 
 MAX_RESIDUAL = 8  # residual fields of the last observations together from which localisation has failed; tuned
 MAX_RESIDUAL_AFTER_MOVING = 24  # the same once an object was moved, for it may lie elsewhere than believed; tuned

@@ -9,8 +9,8 @@ occupancy map. Each of its 160 fields counts as predicted, as explained (it show
 import math
 from dataclasses import dataclass, field, replace
 
-from kb.body import Command, Impression, Move, Push, Release, Turn
-from kb.localisation.after_carry import (
+from utak.kb.body import Command, Impression, Move, Push, Release, Turn
+from utak.kb.localisation.after_carry import (
     agreeing_origins,
     contact_suspects,
     explain_carry,
@@ -18,26 +18,26 @@ from kb.localisation.after_carry import (
     objects_astray,
     refined_extent,
 )
-from kb.localisation.after_walk import DeadReckoning, explain_walk
-from kb.localisation.field_account import Accommodation, account_for_fields
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
-from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
-from kb.localisation.hypotheses.walk_outcomes import (
+from utak.kb.localisation.after_walk import DeadReckoning, explain_walk
+from utak.kb.localisation.field_account import Accommodation, account_for_fields
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
+from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
+from utak.kb.localisation.hypotheses.walk_outcomes import (
     MotionHypothesis,
     blocked_ends,
     entered_square,
     observation_places,
     snap_to_middle,
 )
-from kb.localisation.hypotheses.what_if import command_motion
-from kb.localisation.score import Judgement
-from kb.localisation.state import TrackerState
-from kb.mapping.completions import Completions
-from kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
-from kb.mapping.patch import Patch, patch_of_squares
-from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
-from kb.perception.retina import count_ranges
+from utak.kb.localisation.hypotheses.what_if import command_motion
+from utak.kb.localisation.score import Judgement
+from utak.kb.localisation.state import TrackerState
+from utak.kb.mapping.completions import Completions
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
+from utak.kb.mapping.patch import Patch, patch_of_squares
+from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
+from utak.kb.perception.retina import count_ranges
 
 MAX_MOTIONS = 12  # last straight motions that are kept for re-estimation: bounds its time; tuned on random worlds
 RESIDUAL_WINDOW = 4  # last observations by whose residuals a localisation failure is recognised; tuned likewise

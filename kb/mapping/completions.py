@@ -11,12 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.gibbs import DRAWN, FREE, OCCUPIED, UNSEEN_SQUARE, Counts, costs, pictures
-from geometry.kernels.arrays import Bools, Floats, Labels, Longs
-from geometry.raster.components import Components, bounding_boxes, components
-from kb.mapping.occupancy import OPEN, MapView
-from kb.mapping.occupancy_odds import STRAY_COUNT
+from utak.geometry.counts.gibbs import DRAWN, FREE, OCCUPIED, UNSEEN_SQUARE, Counts, costs, pictures
+from utak.geometry.kernels.arrays import Bools, Floats, Labels, Longs
+from utak.geometry.raster.components import Components, bounding_boxes, components
+from utak.kb.mapping.occupancy import OPEN, MapView
+from utak.kb.mapping.occupancy_odds import STRAY_COUNT
 
 MAX_COMPLETIONS = 12  # completions of a map; tuned on random worlds (benchmarks.campaign)
 DRAWS_PER_COMPLETION = 2  # samples drawn for each completion that is kept; tuned

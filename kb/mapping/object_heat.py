@@ -11,12 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.gibbs import DRAWN
-from geometry.counts.moments import Blobs, blobs
-from geometry.kernels.arrays import Floats, Longs
-from kb.mapping.completions import NO_COMPLETIONS, Completions, draw_completions, given_squares
-from kb.mapping.occupancy import MapView
+from utak.geometry.counts.gibbs import DRAWN
+from utak.geometry.counts.moments import Blobs, blobs
+from utak.geometry.kernels.arrays import Floats, Longs
+from utak.kb.mapping.completions import NO_COMPLETIONS, Completions, draw_completions, given_squares
+from utak.kb.mapping.occupancy import MapView
 
 # All figures below were tuned on random worlds (benchmarks.campaign), unless they are derived.
 MIN_OBJECT_AREA = 4  # squares: smaller parts are no object worth a look

@@ -8,10 +8,9 @@ import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats, Square
-from kb.mapping.completions import Completions
-from kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
+from utak.geometry.kernels.arrays import Floats, Square
+from utak.kb.mapping.completions import Completions
+from utak.kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
 
 ERROR_PROBABILITY = 0.001  # that all completions show a square wrongly; tuned on random worlds (benchmarks.campaign)
 ERROR_PROBABILITY_AT_EDGE = 0.02  # likewise of a square next to one that some completion shows occupied; tuned

@@ -14,12 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.gibbs import Counts
-from geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
-from geometry.kernels.arrays import XY, Bools, Ints, Square
-from kb.mapping.occupancy_odds import Fields, Forgotten, Grown, Logits, Odds
-from kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
+from utak.geometry.counts.gibbs import Counts
+from utak.geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
+from utak.geometry.kernels.arrays import XY, Bools, Ints, Square
+from utak.kb.mapping.occupancy_odds import Fields, Forgotten, Grown, Logits, Odds
+from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
 __all__ = ["FREE", "OCCUPIED", "OPEN"]
 SIGHT_RANGE = 24  # squares: what is seen from a place lies within so many columns and rows, at any orientation; derived

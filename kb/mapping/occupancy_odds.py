@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.settle import remaining_counts
-from geometry.kernels.arrays import Floats, Ints
+from utak.geometry.counts.settle import remaining_counts
+from utak.geometry.kernels.arrays import Floats, Ints
 
 FITTING_ROUNDS = 6  # rounds of iterative proportional fitting after an impression; tuned
 STRAY_COUNT = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one; tuned

@@ -5,10 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools, Square
-from geometry.raster.rasterize import squares
-from kb.mapping.occupancy import MapView
+from utak.geometry.kernels.arrays import XY, Bools, Square
+from utak.geometry.raster.rasterize import squares
+from utak.kb.mapping.occupancy import MapView
 
 
 class Patch(NamedTuple):

@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-
-from geometry.counts.uncover import remove_covered_squares
-from geometry.kernels.arrays import Square as Square
-from kb.mapping.patch import Patch, patch_of_polygon, patch_of_squares
-from kb.objects.subcell_extent import (
+from utak.geometry.counts.uncover import remove_covered_squares
+from utak.geometry.kernels.arrays import Square as Square
+from utak.kb.mapping.patch import Patch, patch_of_polygon, patch_of_squares
+from utak.kb.objects.subcell_extent import (
     NO_INSETS,
     SideValues,
     SubcellExtent,
@@ -28,7 +27,7 @@ from kb.objects.subcell_extent import (
     turn_sides,
     within_play,
 )
-from kb.perception.frame import Samples
+from utak.kb.perception.frame import Samples
 
 GRID_CORNER_TOLERANCE = (
     1e-6  # squares: a corner so close to a corner of the grid is taken to be there; rounding of floats

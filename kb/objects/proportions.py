@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from kb.objects.subcell_extent import GRID_ALIGNMENT_TOLERANCE, SubcellExtent
+from utak.kb.objects.subcell_extent import GRID_ALIGNMENT_TOLERANCE, SubcellExtent
 
 MAX_SQUARE_DIFFERENCE = 0.25  # squares: the sides of a square may seem to differ by so much; tuned
 MAX_SIDE_UNCERTAINTY = 0.5  # squares: the length of a side must be known within this for the class to change; tuned

@@ -4,11 +4,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools
-from geometry.shapes.fit import fit_shapes
-from kb.mapping.occupancy import OCCUPIED, OPEN, MapView
-from kb.mapping.patch import Patch
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.shapes.fit import fit_shapes
+from utak.kb.mapping.occupancy import OCCUPIED, OPEN, MapView
+from utak.kb.mapping.patch import Patch
 
 MIN_COVERED_PROBABILITY = 0.85  # an open square occupied at least so likely is measured as if it were covered; tuned
 MAX_OPEN_RATIO = 2.0  # open squares for each covered one, at most: beyond that nothing is measured; tuned

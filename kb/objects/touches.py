@@ -5,10 +5,10 @@ State that lasts from one impression to the next.
 
 from collections.abc import Container
 
-from geometry.kernels.arrays import Square
-from kb.body import DIRECTIONS
-from kb.mapping.patch import Patch
-from kb.perception.frame import Frame
+from utak.geometry.kernels.arrays import Square
+from utak.kb.body import DIRECTIONS
+from utak.kb.mapping.patch import Patch
+from utak.kb.perception.frame import Frame
 
 
 class Touches:

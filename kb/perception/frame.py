@@ -16,10 +16,9 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import XY, Floats, Ints, Square
-from kb.body import DIRECTIONS
-from kb.perception.retina import FIELDS, OWN_FIELD
+from utak.geometry.kernels.arrays import XY, Floats, Ints, Square
+from utak.kb.body import DIRECTIONS
+from utak.kb.perception.retina import FIELDS, OWN_FIELD
 
 Coordinate = TypeVar("Coordinate", float, Floats)
 CENTRE = (0.5, 0.5)  # the centre of square (0, 0), map frame

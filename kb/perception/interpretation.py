@@ -4,11 +4,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.perception.regions import Percept
-from kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
-from kb.reasoning.solver import solve
-from kb.reasoning.user_rules import rules_reach, world_facts_named
-from kb.tracing.decisions import record_decisions
+from utak.kb.perception.regions import Percept
+from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
+from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.user_rules import rules_reach, world_facts_named
+from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"

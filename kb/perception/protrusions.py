@@ -9,10 +9,9 @@ Masks are (rows, columns) bool on the arrays of the map view, row 0 in the south
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.raster.components import bounding_boxes, components, with_edge_neighbours
-from geometry.raster.runs import runs_along_rows
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import bounding_boxes, components, with_edge_neighbours
+from utak.geometry.raster.runs import runs_along_rows
 
 RowColumn = tuple[int, int]  # a square as (row, column)
 VERGE_TOUCH_COLOUR = "b"  # the colour of the verge; convention (the simulated world)

@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, Labels, Longs
-from geometry.raster.components import bounding_boxes, components
-from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, neighbours
+from utak.geometry.kernels.arrays import Bools, Labels, Longs
+from utak.geometry.raster.components import bounding_boxes, components
+from utak.kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, neighbours
 
 
 class Region(NamedTuple):

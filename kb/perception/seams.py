@@ -14,12 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, Labels
-from geometry.raster.components import components
-from geometry.raster.runs import runs_along_rows
-from kb.perception.protrusions import MAX_THING_LENGTH, RowColumn
-from kb.perception.regions import Percept, Region, label_of
+from utak.geometry.kernels.arrays import Bools, Labels
+from utak.geometry.raster.components import components
+from utak.geometry.raster.runs import runs_along_rows
+from utak.kb.perception.protrusions import MAX_THING_LENGTH, RowColumn
+from utak.kb.perception.regions import Percept, Region, label_of
 
 MAX_CUTS = 12  # cuts in one region; a bound on time
 MAX_PAIRED_LINES = 40  # lines of which pairs are tried where no single one parts a region; a bound on time

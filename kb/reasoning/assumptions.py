@@ -9,15 +9,20 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.language.diagnostics import BadInputError, did_you_mean
-from kb.language.integers import integers_beyond_32_bits
-from kb.language.reader import parse_facts
-from kb.language.source_text import Source, source_from_bytes
-from kb.language.terms import Fact, Number, Symbol
-from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts, thing_positions
-from kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_THERE, USER_RULE_INTERFACES
-from kb.reasoning.rulebook import INTERFACE_PREDICATES, INTERNAL_PREDICATES, PREDICATES_BY_ENCODING, QUERY_INTERFACE
-from kb.reasoning.user_rules import read_rules, read_tested_sources, sources_of
+from utak.kb.language.diagnostics import BadInputError, did_you_mean
+from utak.kb.language.integers import integers_beyond_32_bits
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import Source, source_from_bytes
+from utak.kb.language.terms import Fact, Number, Symbol
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts, thing_positions
+from utak.kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_THERE, USER_RULE_INTERFACES
+from utak.kb.reasoning.rulebook import (
+    INTERFACE_PREDICATES,
+    INTERNAL_PREDICATES,
+    PREDICATES_BY_ENCODING,
+    QUERY_INTERFACE,
+)
+from utak.kb.reasoning.user_rules import read_rules, read_tested_sources, sources_of
 
 ASSUMPTION_FILE = "assume"  # the name of an assumption in messages
 # By a predicate of the world model: the atom of reconciliation.lp that says the same of a fact; '' for none.

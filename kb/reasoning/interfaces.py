@@ -6,7 +6,7 @@ invent a region, a neck or an object.
 
 from collections.abc import Mapping
 
-from kb.language.arguments import (
+from utak.kb.language.arguments import (
     COLOUR_ARGUMENT,
     NAME_ARGUMENT,
     ArgumentType,
@@ -16,8 +16,8 @@ from kb.language.arguments import (
     pattern_argument,
     word_argument,
 )
-from kb.language.terms import Symbol, Term
-from kb.language.vocabulary import (
+from utak.kb.language.terms import Symbol, Term
+from utak.kb.language.vocabulary import (
     BELIEF_PREDICATES,
     CONFIDENCE_ARGUMENT,
     CORNER_NAMES,

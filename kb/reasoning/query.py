@@ -2,7 +2,7 @@
 
 A query without variables has the answer yes, no or don't know. A query with variables has the rows of values for which
 it certainly holds; when there is none, no or don't know. Besides the facts, queries can use `object(N)`, which stands
-for `kind(N, object, C)`. `kb.three_valued.evaluation` decides what is certain, possible or false, by the table
+for `kind(N, object, C)`. `utak.kb.three_valued.evaluation` decides what is certain, possible or false, by the table
 `BELIEF_PREDICATES`
 of kb.language.vocabulary; docs/files.md describes the rules.
 """
@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.integers import integers_beyond_32_bits
-from kb.language.reader import parse_facts
-from kb.language.source_text import source_from_bytes
-from kb.language.terms import Fact, Number
-from kb.language.vocabulary import BELIEF_PREDICATES
-from kb.reasoning.rulebook import Statement
-from kb.reasoning.worker import Worker
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.integers import integers_beyond_32_bits
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import source_from_bytes
+from utak.kb.language.terms import Fact, Number
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
+from utak.kb.reasoning.rulebook import Statement
+from utak.kb.reasoning.worker import Worker
 
 MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default; a convention
 MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
@@ -90,7 +90,7 @@ class QueryEngine:
         files = tuple(map(str, rules))
         if files == self._files:
             return
-        from kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
+        from utak.kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
 
         self._rules = read_rules(files).query_rules if files else ()
         self._files, self._facts = files, None

@@ -1,8 +1,8 @@
 """The separate process that answers queries: it reads one JSON line a request and writes one JSON line a response.
 
-`kb.reasoning.worker` starts it, and kills it when a request takes too long. The process has little memory and can open
-no file; a crash of clingo ends this process only. A query is the body of one rule; its answer holds the values of its
-variables.
+`utak.kb.reasoning.worker` starts it, and kills it when a request takes too long. The process has little memory and can
+open no file; a crash of clingo ends this process only. A query is the body of one rule; its answer holds the values of
+its variables.
 """
 
 import json
@@ -13,22 +13,21 @@ from typing import Any
 
 import clingo
 from clingo.ast import AST, ASTType, parse_string
-
-from kb.language import operating_system
-from kb.language.diagnostics import did_you_mean
-from kb.language.vocabulary import BELIEF_PREDICATES, Signature
-from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
-from kb.three_valued.aliases import rename_utak_to_org
-from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
-from kb.three_valued.derivation import derive
-from kb.three_valued.evaluation import find_bindings
-from kb.three_valued.join_order import unsafe_variable_error
-from kb.three_valued.known_words import ConstantNames, check_body, names_in_facts, types_of_variables
-from kb.three_valued.open_world import Beliefs, FactRow
-from kb.three_valued.provenance import certain_instances
-from kb.three_valued.term_values import Bindings
-from kb.three_valued.uncertain_values import Value
-from kb.tracing.requests import respond
+from utak.kb.language import operating_system
+from utak.kb.language.diagnostics import did_you_mean
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
+from utak.kb.three_valued.aliases import rename_utak_to_org
+from utak.kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
+from utak.kb.three_valued.derivation import derive
+from utak.kb.three_valued.evaluation import find_bindings
+from utak.kb.three_valued.join_order import unsafe_variable_error
+from utak.kb.three_valued.known_words import ConstantNames, check_body, names_in_facts, types_of_variables
+from utak.kb.three_valued.open_world import Beliefs, FactRow
+from utak.kb.three_valued.provenance import certain_instances
+from utak.kb.three_valued.term_values import Bindings
+from utak.kb.three_valued.uncertain_values import Value
+from utak.kb.tracing.requests import respond
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
 # Seconds of processor time for one request; a convention, well above every limit at which the parent ends the process.

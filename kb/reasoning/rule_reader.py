@@ -19,11 +19,10 @@ from clingo.ast import (
     Transformer,
     parse_string,
 )
-
-from kb.language.vocabulary import Signature
-from kb.three_valued.arithmetic import CalculationError, calculate
-from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
-from kb.tracing.syntax import global_variables_of
+from utak.kb.language.vocabulary import Signature
+from utak.kb.three_valued.arithmetic import CalculationError, calculate
+from utak.kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
+from utak.kb.tracing.syntax import global_variables_of
 
 RENAMED_PREFIX = "own__"  # of the names of users' predicates where encodings have another predicate of that name
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding

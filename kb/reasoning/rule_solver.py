@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import clingo
-
-from kb.reasoning.encodings import CORE_GUIDED
-from kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
-from kb.three_valued.clauses import ClauseError
+from utak.kb.reasoning.encodings import CORE_GUIDED
+from utak.kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
+from utak.kb.three_valued.clauses import ClauseError
 
 Response = dict[str, Any]  # JSON values for the parent process
 MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those that contradict; a convention

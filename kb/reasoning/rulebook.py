@@ -8,13 +8,13 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kb.language.arguments import ArgumentType
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.reader import facts_from_text
-from kb.language.source_text import Source
-from kb.language.terms import Fact
-from kb.language.vocabulary import BELIEF_PREDICATES, Signature
-from kb.reasoning.interfaces import (
+from utak.kb.language.arguments import ArgumentType
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.source_text import Source
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.reasoning.interfaces import (
     COMPOUND_FORMS,
     DEFINING_FACTS,
     READ_ONLY_PREDICATES,

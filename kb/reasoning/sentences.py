@@ -15,9 +15,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from kb.language.diagnostics import Problem, SourceSpan, did_you_mean
-from kb.language.source_text import Source
-from kb.language.tokens import Token, tokenize
+from utak.kb.language.diagnostics import Problem, SourceSpan, did_you_mean
+from utak.kb.language.source_text import Source
+from utak.kb.language.tokens import Token, tokenize
 
 ANNOTATION_MARK = "%!"  # begins a comment that is an annotation
 PLACEHOLDER = re.compile(r"\{(_*[A-Z][A-Za-z0-9_']*)(?:/(100?))?\}")  # a variable, and by what it is divided

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import clingo
-
-from kb.reasoning.encodings import CORE_GUIDED, ENCODING_FOLDERS, BoundedAnswer, encoding_files
-from kb.tracing.decisions import note_answer, note_applied_rules
+from utak.kb.reasoning.encodings import CORE_GUIDED, ENCODING_FOLDERS, BoundedAnswer, encoding_files
+from utak.kb.tracing.decisions import note_answer, note_applied_rules
 
 MAX_BOUNDED_SECONDS = 600.0  # of wall-clock time; against a search that hangs, never reached within the conflicts
 
@@ -71,7 +70,7 @@ def _answer(
     """Return the answer of `solve` or `solve_within`; cached while the files stay as they are."""
     users = _users_files(files)
     if users:
-        from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time
+        from utak.kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time
 
         files = tuple(path for path in files if path not in users)
         found = solve_with_user_rules(files, users, facts, conflicts, without=without)

@@ -14,19 +14,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import clingo
-
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.integers import integers_beyond_32_bits
-from kb.language.reader import MAX_TERM_DEPTH, facts_from_text
-from kb.language.source_text import Source, read_source
-from kb.language.terms import Fact
-from kb.language.tokens import Token, tokenize
-from kb.language.vocabulary import Signature
-from kb.reasoning.encodings import BoundedAnswer, encoding_path, encoding_text
-from kb.reasoning.interfaces import USER_RULE_INTERFACES
-from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
-from kb.reasoning.sentences import RuleWords, read_sentences
-from kb.reasoning.worker import Worker
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.integers import integers_beyond_32_bits
+from utak.kb.language.reader import MAX_TERM_DEPTH, facts_from_text
+from utak.kb.language.source_text import Source, read_source
+from utak.kb.language.terms import Fact
+from utak.kb.language.tokens import Token, tokenize
+from utak.kb.language.vocabulary import Signature
+from utak.kb.reasoning.encodings import BoundedAnswer, encoding_path, encoding_text
+from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
+from utak.kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
+from utak.kb.reasoning.sentences import RuleWords, read_sentences
+from utak.kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
 TOKENS_BETWEEN_CLOCKS = 1000  # tokens read between two looks at the clock: some milliseconds

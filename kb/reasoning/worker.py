@@ -10,7 +10,7 @@ import threading
 from contextlib import suppress
 from typing import IO, Any
 
-from utak_command import isolated_command
+from utak.launcher import isolated_command
 
 MAX_START_SECONDS = 30.0  # seconds of wall-clock time until a worker must be ready; a convention
 LineQueue = queue.SimpleQueue[bytes]  # the lines that a worker has written
@@ -64,7 +64,7 @@ def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
     """Return a new process that is ready, and the queue of the lines that it writes."""
     # Raises RuntimeError when it is not ready within MAX_START_SECONDS.
     worker = subprocess.Popen(
-        isolated_command("kb.reasoning.query_worker"),
+        isolated_command("utak.kb.reasoning.query_worker"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

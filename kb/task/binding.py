@@ -5,13 +5,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-from kb.language.terms import Symbol
-from kb.objects.proportions import possible_rectangle_shapes
-from kb.reasoning.encodings import KB_ENCODINGS
-from kb.reasoning.solver import solve
-from kb.reasoning.user_rules import rules_reach
-from kb.task.task import Task
-from kb.world.model import Node, WorldModel
+from utak.kb.language.terms import Symbol
+from utak.kb.objects.proportions import possible_rectangle_shapes
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.user_rules import rules_reach
+from utak.kb.task.task import Task
+from utak.kb.world.model import Node, WorldModel
 
 NO_MEANINGS: Mapping[str, str] = MappingProxyType({})
 

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.reader import facts_from_text, parse_facts
-from kb.language.source_text import Source, read_source
-from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import (
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.reader import facts_from_text, parse_facts
+from utak.kb.language.source_text import Source, read_source
+from utak.kb.language.terms import Fact, Number, Symbol, Term
+from utak.kb.language.vocabulary import (
     CONSTRAINT_GOALS,
     GOAL_VOCABULARY,
     RESERVED_PARAMETER_NAMES,

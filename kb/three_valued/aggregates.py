@@ -1,10 +1,9 @@
 """The value of an aggregate, some tuples of which are certain and others only possible."""
 
 import clingo
-
-from kb.language.integers import MAX_INT32, MIN_INT32
-from kb.three_valued.arithmetic import require_int32
-from kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds
+from utak.kb.language.integers import MAX_INT32, MIN_INT32
+from utak.kb.three_valued.arithmetic import require_int32
+from utak.kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds
 
 ValueTuple = tuple[Value, ...]  # a tuple of an aggregate
 

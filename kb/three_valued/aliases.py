@@ -8,9 +8,8 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import clingo
-
-from kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, KIND_ARGUMENT, TASK_GOAL_ARGUMENT
-from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, KIND_ARGUMENT, TASK_GOAL_ARGUMENT
+from utak.kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
 UTAK_TYPES = (

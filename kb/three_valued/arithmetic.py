@@ -5,7 +5,7 @@ Division and remainder round towards zero, as clingo's do. A power with a negati
 
 from collections.abc import Callable, Mapping
 
-from kb.language.integers import MAX_INT32, MIN_INT32
+from utak.kb.language.integers import MAX_INT32, MIN_INT32
 
 MAX_EXPONENT = 64  # every power of 2 or more with a greater exponent is beyond 32 bits, so it is not computed
 

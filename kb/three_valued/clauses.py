@@ -11,9 +11,8 @@ from typing import Any
 
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator, Sign, UnaryOperator
-
-from kb.language.integers import MIN_INT32
-from kb.three_valued.uncertain_values import MIRRORED_SIGNS
+from utak.kb.language.integers import MIN_INT32
+from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS
 
 # clingo's operators as written in programs.
 COMPARISON_SIGNS = {

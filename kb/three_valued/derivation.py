@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Sequence
 
-from kb.language.vocabulary import Signature
-from kb.three_valued.clauses import Aggregate, Atom, Clause, ClauseError, ConditionalLiteral, Literal, atoms_of
-from kb.three_valued.evaluation import find_bindings, fixed_confidence_variables
-from kb.three_valued.open_world import Beliefs
-from kb.three_valued.term_values import value_of
+from utak.kb.language.vocabulary import Signature
+from utak.kb.three_valued.clauses import Aggregate, Atom, Clause, ClauseError, ConditionalLiteral, Literal, atoms_of
+from utak.kb.three_valued.evaluation import find_bindings, fixed_confidence_variables
+from utak.kb.three_valued.open_world import Beliefs
+from utak.kb.three_valued.term_values import value_of
 
 
 def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:

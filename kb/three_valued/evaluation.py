@@ -11,10 +11,9 @@ from itertools import product
 from typing import Any
 
 import clingo
-
-from kb.three_valued.aggregates import Tally
-from kb.three_valued.arithmetic import CalculationError, calculate
-from kb.three_valued.clauses import (
+from utak.kb.three_valued.aggregates import Tally
+from utak.kb.three_valued.arithmetic import CalculationError, calculate
+from utak.kb.three_valued.clauses import (
     Aggregate,
     AggregateElement,
     Atom,
@@ -29,9 +28,9 @@ from kb.three_valued.clauses import (
     Variable,
     variables_of,
 )
-from kb.three_valued.join_order import assigned_variable, assignment, order_literals
-from kb.three_valued.open_world import Beliefs
-from kb.three_valued.term_values import (
+from utak.kb.three_valued.join_order import assigned_variable, assignment, order_literals
+from utak.kb.three_valued.open_world import Beliefs
+from utak.kb.three_valued.term_values import (
     Bindings,
     deciding_numbers,
     from_clingo,
@@ -40,7 +39,7 @@ from kb.three_valued.term_values import (
     value_of,
     values_of,
 )
-from kb.three_valued.uncertain_values import (
+from utak.kb.three_valued.uncertain_values import (
     MIRRORED_SIGNS,
     TruthValue,
     Unknown,

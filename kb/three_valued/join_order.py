@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from kb.language.integers import MAX_INT32, MIN_INT32
-from kb.three_valued.clauses import (
+from utak.kb.language.integers import MAX_INT32, MIN_INT32
+from utak.kb.three_valued.clauses import (
     Aggregate,
     Atom,
     ClauseError,
@@ -18,7 +18,7 @@ from kb.three_valued.clauses import (
     global_variables,
     variables_of,
 )
-from kb.three_valued.uncertain_values import MIRRORED_SIGNS
+from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS
 
 
 def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Literal, ...]:

@@ -3,12 +3,11 @@
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import clingo
-
-from kb.language.arguments import ArgumentType, abbreviated
-from kb.language.diagnostics import SourceSpan, did_you_mean
-from kb.language.terms import Number, Symbol, Term, Text
-from kb.language.vocabulary import BELIEF_PREDICATES, Signature
-from kb.three_valued.clauses import (
+from utak.kb.language.arguments import ArgumentType, abbreviated
+from utak.kb.language.diagnostics import SourceSpan, did_you_mean
+from utak.kb.language.terms import Number, Symbol, Term, Text
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.three_valued.clauses import (
     Aggregate,
     Atom,
     ClauseError,
@@ -20,7 +19,7 @@ from kb.three_valued.clauses import (
     Variable,
     atoms_of,
 )
-from kb.three_valued.uncertain_values import Value
+from utak.kb.three_valued.uncertain_values import Value
 
 ConstantNames = Mapping[str, frozenset[str]]  # constants as text, by the name of the argument type
 NO_PLACE = SourceSpan(1, 1, 1)  # the place of values that stand in no file

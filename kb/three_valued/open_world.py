@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kb.language.vocabulary import BELIEF_PREDICATES, PLAN_PREDICATES, BeliefPredicate, Openness, Signature
-from kb.three_valued.uncertain_values import Unknown, Value, compare
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, PLAN_PREDICATES, BeliefPredicate, Openness, Signature
+from utak.kb.three_valued.uncertain_values import Unknown, Value, compare
 
 FactRow = tuple[Value, ...]  # the arguments of one fact
 OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)

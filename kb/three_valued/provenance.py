@@ -6,7 +6,7 @@ The form is that of kb.tracing.requests: units (here clauses), and the instances
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from kb.three_valued.clauses import (
+from utak.kb.three_valued.clauses import (
     Aggregate,
     Atom,
     BooleanLiteral,
@@ -22,11 +22,11 @@ from kb.three_valued.clauses import (
     global_variables,
     variables_of,
 )
-from kb.three_valued.evaluation import find_bindings, fixed_confidence_variables
-from kb.three_valued.open_world import Beliefs
-from kb.three_valued.term_values import Bindings, is_interval, value_of
-from kb.three_valued.uncertain_values import MIRRORED_SIGNS, Unknown
-from kb.tracing.syntax import ANY_NAME, JsonValues
+from utak.kb.three_valued.evaluation import find_bindings, fixed_confidence_variables
+from utak.kb.three_valued.open_world import Beliefs
+from utak.kb.three_valued.term_values import Bindings, is_interval, value_of
+from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS, Unknown
+from utak.kb.tracing.syntax import ANY_NAME, JsonValues
 
 
 def certain_instances(clauses: Sequence[Clause], beliefs: Beliefs) -> JsonValues:

@@ -3,12 +3,11 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 import clingo
-
-from kb.language.integers import MAX_INT32, MIN_INT32
-from kb.three_valued.arithmetic import CalculationError
-from kb.three_valued.clauses import ClauseError, ClauseTerm, Compound, Constant, Operation, Variable
-from kb.three_valued.join_order import unsafe_variable_error
-from kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds, calculate_uncertain
+from utak.kb.language.integers import MAX_INT32, MIN_INT32
+from utak.kb.three_valued.arithmetic import CalculationError
+from utak.kb.three_valued.clauses import ClauseError, ClauseTerm, Compound, Constant, Operation, Variable
+from utak.kb.three_valued.join_order import unsafe_variable_error
+from utak.kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds, calculate_uncertain
 
 Bindings = Mapping[str, Value]  # the values of variables, by name
 

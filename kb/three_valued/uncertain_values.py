@@ -9,9 +9,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import clingo
-
-from kb.language.integers import MAX_INT32, MIN_INT32
-from kb.three_valued.arithmetic import calculate
+from utak.kb.language.integers import MAX_INT32, MIN_INT32
+from utak.kb.three_valued.arithmetic import calculate
 
 TruthValue = bool | None  # None: not known
 Value = Any  # int, clingo.Symbol or Unknown

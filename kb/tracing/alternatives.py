@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 
 import clingo
-
-from kb.tracing.answers import Assumptions, GroundedProgram, PricedAnswer
-from kb.tracing.syntax import JsonValues
+from utak.kb.tracing.answers import Assumptions, GroundedProgram, PricedAnswer
+from utak.kb.tracing.syntax import JsonValues
 
 
 def weigh(grounded: GroundedProgram, answer: Sequence[str], heads: Sequence[str], with_none: bool) -> JsonValues:

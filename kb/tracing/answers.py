@@ -5,9 +5,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import clingo
-
-from kb.tracing.instrument import instance_rules, relaxed_rules, weight_rules
-from kb.tracing.syntax import ParsedProgram, ProgramPart, parsed
+from utak.kb.tracing.instrument import instance_rules, relaxed_rules, weight_rules
+from utak.kb.tracing.syntax import ParsedProgram, ProgramPart, parsed
 
 MAX_TRACE_CONFLICTS = 100_000  # conflicts of clingo's search for one answer; a convention
 Assumptions = Sequence[tuple[clingo.Symbol, bool]]

@@ -12,10 +12,9 @@ from typing import NamedTuple
 
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType
-
-from kb.language.vocabulary import Signature
-from kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
-from kb.tracing.syntax import ParsedProgram, Unit, global_variables_of
+from utak.kb.language.vocabulary import Signature
+from utak.kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
+from utak.kb.tracing.syntax import ParsedProgram, Unit, global_variables_of
 
 MAX_FACTS_OF_ATOM = 200  # candidates for one atom of a rule; a convention
 MAX_CANDIDATES = 3_000  # candidates in all; a convention

@@ -12,10 +12,9 @@ from math import comb
 from typing import NamedTuple
 
 import clingo
-
-from kb.tracing.candidates import CandidateFacts
-from kb.tracing.switches import MAX_CHANGE_SIZE, FactChange, SwitchedProgram
-from kb.tracing.syntax import ParsedProgram
+from utak.kb.tracing.candidates import CandidateFacts
+from utak.kb.tracing.switches import MAX_CHANGE_SIZE, FactChange, SwitchedProgram
+from utak.kb.tracing.syntax import ParsedProgram
 
 MAX_CHECKS = 400  # changes that are tried size by size; a convention, about a second
 MAX_NEAR_CHECKS = 100  # changes of what the wanted atom is about, of each size; a convention

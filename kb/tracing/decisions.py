@@ -1,6 +1,6 @@
 """The record of decisions: what each encoding was given, and what it answered, in the order in which it was asked.
 
-Whoever wants a record opens a block with `record_decisions`; `kb.reasoning.solver.solve` notes every answer in it.
+Whoever wants a record opens a block with `record_decisions`; `utak.kb.reasoning.solver.solve` notes every answer in it.
 Explanations, episodes and dumps of programs are made from such records.
 """
 

@@ -10,9 +10,8 @@ from itertools import islice, permutations, product
 
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign, Transformer
-
-from kb.tracing.calculations import Relation, calculation, names_in, turning_numbers
-from kb.tracing.syntax import ParsedProgram, Unit, head_elements
+from utak.kb.tracing.calculations import Relation, calculation, names_in, turning_numbers
+from utak.kb.tracing.syntax import ParsedProgram, Unit, head_elements
 
 MAX_NUMBERS = 30  # values of one class, beyond which no number is added; a convention
 MAX_COMBINATIONS = 100  # values of the other variables of a comparison that are tried; a convention

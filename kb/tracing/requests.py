@@ -5,13 +5,12 @@ from functools import lru_cache
 from typing import Any
 
 import clingo
-
-from kb.tracing.alternatives import weigh
-from kb.tracing.answers import GroundedProgram, TraceError, instances
-from kb.tracing.candidates import CandidateFacts, candidate_facts
-from kb.tracing.changes import least_change
-from kb.tracing.instrument import condition_infos, is_choice, literal_info
-from kb.tracing.syntax import JsonValues, ProgramPart, parsed
+from utak.kb.tracing.alternatives import weigh
+from utak.kb.tracing.answers import GroundedProgram, TraceError, instances
+from utak.kb.tracing.candidates import CandidateFacts, candidate_facts
+from utak.kb.tracing.changes import least_change
+from utak.kb.tracing.instrument import condition_infos, is_choice, literal_info
+from utak.kb.tracing.syntax import JsonValues, ProgramPart, parsed
 
 
 def respond(request: JsonValues) -> JsonValues:

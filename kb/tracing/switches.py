@@ -8,10 +8,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import clingo
-
-from kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
-from kb.tracing.candidates import CandidateFacts
-from kb.tracing.syntax import ParsedProgram
+from utak.kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
+from utak.kb.tracing.candidates import CandidateFacts
+from utak.kb.tracing.syntax import ParsedProgram
 
 MAX_CHANGE_SIZE = 12  # facts of one change that is looked for size by size; a convention
 FactChange = tuple[int, ...]

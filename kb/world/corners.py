@@ -9,14 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools, Square
-from kb.mapping.occupancy import OCCUPIED
-from kb.mapping.patch import patch_of_polygon
-from kb.perception.regions import label_of
-from kb.reasoning.encodings import KB_ENCODINGS
-from kb.reasoning.solver import solve
-from kb.world.model import WorldModel, hundredths
+from utak.geometry.kernels.arrays import XY, Bools, Square
+from utak.kb.mapping.occupancy import OCCUPIED
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.perception.regions import label_of
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.solver import solve
+from utak.kb.world.model import WorldModel, hundredths
 
 WALL_SAMPLE_LENGTH = 8.0  # squares: a wall is followed so far; if it leaves its row of squares within, it lies askew
 MIN_CORNER_SINE = 0.5  # the sine of the angle between the walls of a corner; below it they are taken for one wall

@@ -11,16 +11,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry import Passage, Screen
-from geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
-from geometry.passages.necks import Segment
-from geometry.raster.components import components
-from kb.perception.interpretation import SHORTEST_WALL
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR
-from kb.perception.regions import extents
-from kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
-from kb.world.model import WorldModel
+from utak.geometry import Passage, Screen
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
+from utak.geometry.passages.necks import Segment
+from utak.geometry.raster.components import components
+from utak.kb.perception.interpretation import SHORTEST_WALL
+from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from utak.kb.perception.regions import extents
+from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
+from utak.kb.world.model import WorldModel
 
 Indices = tuple[Longs, Longs]  # the rows and the columns of some squares
 ENCODED_DOOR_RATIO = float(

@@ -7,12 +7,11 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-
-from geometry.kernels.arrays import Longs
-from kb.localisation.field_account import Accommodation, CellStatus, FieldAccount
-from kb.perception.regions import label_of
-from kb.world.model import FLOOR_NODE, VERGE_NODE, WorldModel, free_squares
-from kb.world.rooms import Rooms
+from utak.geometry.kernels.arrays import Longs
+from utak.kb.localisation.field_account import Accommodation, CellStatus, FieldAccount
+from utak.kb.perception.regions import label_of
+from utak.kb.world.model import FLOOR_NODE, VERGE_NODE, WorldModel, free_squares
+from utak.kb.world.rooms import Rooms
 
 STATUS_LETTERS = {CellStatus.PREDICTED: "p", CellStatus.EXPLAINED: "e", CellStatus.NOISE: "n"}
 

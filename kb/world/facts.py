@@ -12,18 +12,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Floats, Longs
-from geometry.raster.contours import Ring, outline
-from kb.language.vocabulary import ROBOT
-from kb.localisation.field_account import Accommodation
-from kb.mapping.occupancy import OPEN
-from kb.reasoning.user_rules import world_facts_named
-from kb.world.corners import Corner
-from kb.world.evidence import evidence
-from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
-from kb.world.pathgraph import pathgraph_facts
-from kb.world.rooms import Rooms
+from utak.geometry.kernels.arrays import Bools, Floats, Longs
+from utak.geometry.raster.contours import Ring, outline
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.localisation.field_account import Accommodation
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.reasoning.user_rules import world_facts_named
+from utak.kb.world.corners import Corner
+from utak.kb.world.evidence import evidence
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
+from utak.kb.world.pathgraph import pathgraph_facts
+from utak.kb.world.rooms import Rooms
 
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
 SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention

@@ -15,17 +15,16 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools, Labels, Square
-from geometry.raster.components import with_edge_neighbours
-from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
-from kb.mapping.occupancy import OPEN, MapView
-from kb.mapping.patch import Patch
-from kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
-from kb.perception.frame import Frame
-from kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, Kinds
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
-from kb.perception.regions import Percept
+from utak.geometry.kernels.arrays import XY, Bools, Labels, Square
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
+from utak.kb.mapping.occupancy import OPEN, MapView
+from utak.kb.mapping.patch import Patch
+from utak.kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
+from utak.kb.perception.frame import Frame
+from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, Kinds
+from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
+from utak.kb.perception.regions import Percept
 
 MAX_SMALL_FRAME_DOUBT = math.radians(5)  # radians: two frames that differ less may explain the same impressions; tuned
 MAX_SQUARE_SHIFT = 0.3  # squares: a square that lies elsewhere by at most this is still the same; tuned

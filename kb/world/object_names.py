@@ -6,8 +6,8 @@ A patch of squares keeps the name of the patch of the last impression with which
 from collections import Counter
 from collections.abc import Container
 
-from geometry.kernels.arrays import Square
-from kb.mapping.patch import Patch
+from utak.geometry.kernels.arrays import Square
+from utak.kb.mapping.patch import Patch
 
 
 class ObjectNames:

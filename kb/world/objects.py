@@ -12,28 +12,27 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, Labels, Square
-from geometry.raster.components import bounding_boxes
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
-from kb.mapping.patch import Patch, patch_of, patch_of_polygon
-from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
-from kb.objects.proportions import corrected_shape
-from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
-from kb.objects.touches import Touches
-from kb.perception.frame import ADJACENT_OFFSETS, Frame
-from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import (
+from utak.geometry.kernels.arrays import Bools, Labels, Square
+from utak.geometry.raster.components import bounding_boxes
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
+from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
+from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
+from utak.kb.objects.proportions import corrected_shape
+from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
+from utak.kb.objects.touches import Touches
+from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
+from utak.kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
+from utak.kb.perception.protrusions import (
     VERGE_TOUCH_COLOUR,
     joined_through_walls,
     protrusions,
     separate_things,
     with_embedded_things,
 )
-from kb.perception.regions import Percept, Region, label_of
-from kb.perception.seams import cornered_parts, part_by_colour
-from kb.world.facts import colour_facts
-from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
+from utak.kb.perception.regions import Percept, Region, label_of
+from utak.kb.perception.seams import cornered_parts, part_by_colour
+from utak.kb.world.facts import colour_facts
+from utak.kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
 LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned

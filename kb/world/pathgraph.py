@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from geometry import Screen
-from kb.world.model import WorldModel, hundredths
-from kb.world.rooms import Rooms, count_crossings
+from utak.geometry import Screen
+from utak.kb.world.model import WorldModel, hundredths
+from utak.kb.world.rooms import Rooms, count_crossings
 
 
 def pathgraph_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:

@@ -8,10 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 from shapely import LineString
-
-from geometry.kernels.arrays import Longs
-from kb.world.model import WorldModel
-from kb.world.rooms import NO_ROOM, Rooms
+from utak.geometry.kernels.arrays import Longs
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import NO_ROOM, Rooms
 
 SAME_DOOR = 1.5  # squares between the middle of a door's neck, as it was or is believed now, and the other neck
 WAKING_ROOM = 1  # the number of the room in which the robot woke, as kb/asp/belief.lp says

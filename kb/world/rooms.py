@@ -13,15 +13,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry import Passage, Screen
-from geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
-from geometry.passages.necks import Segment
-from geometry.raster.winding import crossings_by_step
-from kb.reasoning.encodings import KB_ENCODINGS
-from kb.reasoning.solver import solve
-from kb.world.doors import DoorwayNeck, find_necks
-from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
+from utak.geometry import Passage, Screen
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
+from utak.geometry.passages.necks import Segment
+from utak.geometry.raster.winding import crossings_by_step
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.solver import solve
+from utak.kb.world.doors import DoorwayNeck, find_necks
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 
 MIN_DOOR_CONFIDENCE = (
     60  # percent: confidence from which a neck counts as a door; tuned on random worlds (benchmarks.campaign)

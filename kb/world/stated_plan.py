@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError
-from kb.language.reader import parse_facts
-from kb.language.source_text import source_from_bytes
-from kb.language.terms import Fact
-from kb.language.vocabulary import PLAN_PREDICATES, check_facts
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import source_from_bytes
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import PLAN_PREDICATES, check_facts
 
 PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 STUCK_WORDS = {  # what the robot may be stuck with beside goals, in words; goals keep their names

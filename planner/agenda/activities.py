@@ -6,28 +6,28 @@ The activities have the names of planner/asp/agenda.lp, which chooses among them
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
-from kb.body import Grasp, Release
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT
-from kb.task.task import Task
-from planner.agenda.choice import Activity, Agenda, StageEnd
-from planner.agenda.own_goals import OwnGoals
-from planner.carrying.open_facts import open_fact_against
-from planner.constraints import avoidances
-from planner.deciding.clearing import ObstacleClearer
-from planner.deciding.errands import ErrandRunner
-from planner.deciding.feeling import feeling_scope
-from planner.deciding.keeping import ConstraintKeeper
-from planner.deciding.stage_turn import CONSTRAINTS, StageTurn
-from planner.deciding.transport import Transporter
-from planner.deciding.trials import Trials
-from planner.decision import Decision, TaskVerdict, nothing_to_do
-from planner.goals.placement import meets_any_end, to_view_frame
-from planner.goals.robot_goals import destination
-from planner.per_model import PerModel
-from planner.sights.walls import ALL_WALLS
-from planner.situation import Situation
-from planner.tasking.rule_effects import rules_that_close
+from utak.kb.body import Grasp, Release
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.task.task import Task
+from utak.planner.agenda.choice import Activity, Agenda, StageEnd
+from utak.planner.agenda.own_goals import OwnGoals
+from utak.planner.carrying.open_facts import open_fact_against
+from utak.planner.constraints import avoidances
+from utak.planner.deciding.clearing import ObstacleClearer
+from utak.planner.deciding.errands import ErrandRunner
+from utak.planner.deciding.feeling import feeling_scope
+from utak.planner.deciding.keeping import ConstraintKeeper
+from utak.planner.deciding.stage_turn import CONSTRAINTS, StageTurn
+from utak.planner.deciding.transport import Transporter
+from utak.planner.deciding.trials import Trials
+from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
+from utak.planner.goals.placement import meets_any_end, to_view_frame
+from utak.planner.goals.robot_goals import destination
+from utak.planner.per_model import PerModel
+from utak.planner.sights.walls import ALL_WALLS
+from utak.planner.situation import Situation
+from utak.planner.tasking.rule_effects import rules_that_close
 
 
 class Activities:

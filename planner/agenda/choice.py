@@ -4,11 +4,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.reasoning.solver import solve
-from kb.reasoning.user_rules import rules_to_blame
-from kb.tracing.decisions import record_decisions
-from planner.decision import Decision, TaskVerdict
-from planner.navigation.subgoals import PLANNER_ASP
+from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.user_rules import rules_to_blame
+from utak.kb.tracing.decisions import record_decisions
+from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.navigation.subgoals import PLANNER_ASP
 
 
 class Activity(NamedTuple):

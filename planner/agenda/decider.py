@@ -8,31 +8,31 @@ from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 
-from geometry.kernels.arrays import XY
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT
-from kb.reasoning.user_rules import rules_reach
-from kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
-from kb.task.task import Task
-from kb.tracing.decisions import record_decisions
-from kb.world.corners import Corner, corners
-from kb.world.facts import Places, facts_for_rules
-from kb.world.model import WorldModel
-from kb.world.place_names import PlaceNames
-from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
-from planner.agenda.activities import Activities
-from planner.carrying.plan_executor import PlanExecutor
-from planner.deciding.pursuit import Pursuer
-from planner.deciding.stage_turn import StageTurn
-from planner.deciding.verification import Verifier
-from planner.decision import Decision, TaskVerdict
-from planner.goals.references import as_meant, is_moved_for_others_only
-from planner.screen.projection import CostMaps, costs_to_objects
-from planner.situation import Situation, possible_doors, regions_kept_off
-from planner.stages import Stage, constraints, parameters_that_keep_meaning, stages
-from planner.tasking.proposal import TASK_ENCODING
-from planner.tasking.rule_effects import rules_about_doors
-from planner.tasking.task_plan import TaskPlan
+from utak.geometry.kernels.arrays import XY
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.reasoning.user_rules import rules_reach
+from utak.kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
+from utak.kb.task.task import Task
+from utak.kb.tracing.decisions import record_decisions
+from utak.kb.world.corners import Corner, corners
+from utak.kb.world.facts import Places, facts_for_rules
+from utak.kb.world.model import WorldModel
+from utak.kb.world.place_names import PlaceNames
+from utak.kb.world.rooms import NO_ROOMS, Rooms, rooms_of
+from utak.planner.agenda.activities import Activities
+from utak.planner.carrying.plan_executor import PlanExecutor
+from utak.planner.deciding.pursuit import Pursuer
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.verification import Verifier
+from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.goals.references import as_meant, is_moved_for_others_only
+from utak.planner.screen.projection import CostMaps, costs_to_objects
+from utak.planner.situation import Situation, possible_doors, regions_kept_off
+from utak.planner.stages import Stage, constraints, parameters_that_keep_meaning, stages
+from utak.planner.tasking.proposal import TASK_ENCODING
+from utak.planner.tasking.rule_effects import rules_about_doors
+from utak.planner.tasking.task_plan import TaskPlan
 
 PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that something cannot be, as things are
 

@@ -6,29 +6,34 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-
-from geometry.kernels.arrays import XY
-from kb.body import Release
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from kb.world.model import Node
-from kb.world.rooms import MIN_DOOR_CONFIDENCE
-from planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
-from planner.deciding.search import contact_subgoals, subgoals_towards
-from planner.deciding.stage_turn import StageTurn
-from planner.deciding.transport import Transporter, push_to_see
-from planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
-from planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
-from planner.goals.joint import opposite_corners_reason
-from planner.goals.robot_goals import Destination, jointly, robot_stands_on, unknown_destination, unreachable_reason
-from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
-from planner.screen.moves import next_move
-from planner.sights.viewpoints import TO_REACH
-from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import ORIGIN_GOALS, rests_on_waking
-from planner.subgoal_kind import SubgoalKind
-from planner.tasking.intention import Intention
-from planner.tasking.setting import DestinationFunction
+from utak.geometry.kernels.arrays import XY
+from utak.kb.body import Release
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
+from utak.kb.world.model import Node
+from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
+from utak.planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
+from utak.planner.deciding.search import contact_subgoals, subgoals_towards
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.transport import Transporter, push_to_see
+from utak.planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
+from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
+from utak.planner.goals.joint import opposite_corners_reason
+from utak.planner.goals.robot_goals import (
+    Destination,
+    jointly,
+    robot_stands_on,
+    unknown_destination,
+    unreachable_reason,
+)
+from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
+from utak.planner.screen.moves import next_move
+from utak.planner.sights.viewpoints import TO_REACH
+from utak.planner.skills.into_corner import IntoCorner, halt_beside_walls
+from utak.planner.stages import ORIGIN_GOALS, rests_on_waking
+from utak.planner.subgoal_kind import SubgoalKind
+from utak.planner.tasking.intention import Intention
+from utak.planner.tasking.setting import DestinationFunction
 
 LEAST_ROUND = 330.0  # degrees by which a track winds about a thing that it goes round (the meaning of the goal)
 NO_ROUND = 5.0  # degrees that do not matter for the sense of rotation (convention)

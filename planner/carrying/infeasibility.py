@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from geometry.kernels.arrays import XY
-from geometry.manipulation.plan_carrying import CarryingPlan
-from kb.objects.held_object import is_grid_aligned
-from kb.world.model import Node, WorldModel
-from planner.carrying.open_facts import possible_width
-from planner.goals.placement import is_off_quarter_turn
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.plan_carrying import CarryingPlan
+from utak.kb.objects.held_object import is_grid_aligned
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.carrying.open_facts import possible_width
+from utak.planner.goals.placement import is_off_quarter_turn
 
 ONE_NUMBER = 0.05  # squares: a missing width that is known this well is told as one number; a convention
 

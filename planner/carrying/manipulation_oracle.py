@@ -13,33 +13,32 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, goal_key, moved
-from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
-from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.rasterize import squares, squares_after
-from geometry.raster.runs import mask_to_polygon
-from kb.language.vocabulary import ROBOT
-from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
-from kb.objects.held_object import is_grid_aligned
-from kb.perception.frame import ADJACENT_OFFSETS
-from kb.reasoning.solver import solve
-from kb.world.model import Node, WorldModel
-from planner.carrying.infeasibility import Infeasibility, certify
-from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor
-from planner.goals.placement import (
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import End, goal_key, moved
+from utak.geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.raster.rasterize import squares, squares_after
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
+from utak.kb.objects.held_object import is_grid_aligned
+from utak.kb.perception.frame import ADJACENT_OFFSETS
+from utak.kb.reasoning.solver import solve
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.carrying.infeasibility import Infeasibility, certify
+from utak.planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor
+from utak.planner.goals.placement import (
     CERTAIN_OBJECT,
     POSSIBLE_OBJECT,
     forbidden_squares,
     possible_extension,
     to_view_frame,
 )
-from planner.navigation.subgoals import PLANNER_ASP
-from planner.screen.moves import orientation_is_uncertain
-from planner.screen.projection import UNSEEN_LEVEL, dilate
-from planner.situation import Situation
-from planner.under_way import UNDER_WAY
+from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.screen.projection import UNSEEN_LEVEL, dilate
+from utak.planner.situation import Situation
+from utak.planner.under_way import UNDER_WAY
 
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
 TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of squares, the surest first

@@ -10,15 +10,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import with_edge_neighbours
-from kb.world.model import WorldModel
-from planner.decision import Decision, TaskVerdict, nothing_to_do
-from planner.screen.moves import orientation_is_settled
-from planner.sights.things import things_in_question
-from planner.sights.walls import ALL_WALLS, FeelingScope, floor_apart, walls_in_question
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.world.model import WorldModel
+from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
+from utak.planner.screen.moves import orientation_is_settled
+from utak.planner.sights.things import things_in_question
+from utak.planner.sights.walls import ALL_WALLS, FeelingScope, floor_apart, walls_in_question
+from utak.planner.situation import Situation
 
 NOTHING_LEFT = "nothing is left to look at"  # a fact that proofs name: all floor that can be reached was seen
 

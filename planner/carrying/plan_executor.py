@@ -8,37 +8,37 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from geometry.kernels.arrays import XY
-from geometry.manipulation.goals import End
-from geometry.manipulation.plan_carrying import Inside
-from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.runs import mask_to_polygon
-from kb.body import Grasp, Move, Release
-from kb.objects.held_object import is_grid_aligned
-from kb.perception.frame import CENTRE
-from kb.world.model import Node, WorldModel
-from planner.advice import Act, Go, See, command_of, unplanned_act
-from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
-from planner.carrying.preconditions import (
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.goals import End
+from utak.geometry.manipulation.plan_carrying import Inside
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.body import Grasp, Move, Release
+from utak.kb.objects.held_object import is_grid_aligned
+from utak.kb.perception.frame import CENTRE
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.advice import Act, Go, See, command_of, unplanned_act
+from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
+from utak.planner.carrying.preconditions import (
     PLACE_SLACK,
     look_at_obstacle,
     needed_view,
     touch_of_obstacle,
     turn_cost,
 )
-from planner.carrying.remaining_plan import (
+from utak.planner.carrying.remaining_plan import (
     PlanOperations,
     RemainingPlan,
     grasp_direction,
     is_at,
 )
-from planner.goals.placement import pull_out_end
-from planner.screen.projection import SquareIndices, square_index
-from planner.situation import Situation
-from planner.skills.failed_grasps import FailedGrasps, rotated_grasps
-from planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
-from planner.skills.unjam import retreat_push
+from utak.planner.goals.placement import pull_out_end
+from utak.planner.screen.projection import SquareIndices, square_index
+from utak.planner.situation import Situation
+from utak.planner.skills.failed_grasps import FailedGrasps, rotated_grasps
+from utak.planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
+from utak.planner.skills.unjam import retreat_push
 
 # Unexpected contacts of an object after which it is grasped from elsewhere: where it is known exactly, and where it is
 # not, as after a slip. Tuned on random worlds (benchmarks.campaign).

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable
 
-from kb.mapping.occupancy import OPEN
-from kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
-from planner.advice import See
-from planner.carrying.manipulation_oracle import ManipulationPlan
-from planner.goals.placement import CERTAIN_OBJECT
-from planner.screen.moves import orientation_is_uncertain
-from planner.screen.projection import dilate
-from planner.sights.frontiers import Viewpoint, rim_viewpoint, touch_viewpoint, viewpoint_of
-from planner.sights.viewpoints import TO_TAKE, inspection
-from planner.situation import Situation
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
+from utak.planner.advice import See
+from utak.planner.carrying.manipulation_oracle import ManipulationPlan
+from utak.planner.goals.placement import CERTAIN_OBJECT
+from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.screen.projection import dilate
+from utak.planner.sights.frontiers import Viewpoint, rim_viewpoint, touch_viewpoint, viewpoint_of
+from utak.planner.sights.viewpoints import TO_TAKE, inspection
+from utak.planner.situation import Situation
 
 PLACE_SLACK = 0.02  # squares by which the robot may stand elsewhere in its square before a turn needs more room; tuned
 TURN_COST_OPEN_FRAME = 2.5  # commands that a turn counts for while the orientation of the frame is open; tuned

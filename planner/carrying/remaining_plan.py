@@ -10,20 +10,19 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import shapely
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End
-from geometry.manipulation.legs import shifted, verified
-from geometry.manipulation.plan_carrying import Leg
-from geometry.manipulation.workspace import Workspace
-from geometry.motion.se2 import Motion, Translate
-from kb.body import DIRECTIONS
-from kb.mapping.patch import Patch
-from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
-from planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
-from planner.screen.projection import square_index
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import End
+from utak.geometry.manipulation.legs import shifted, verified
+from utak.geometry.manipulation.plan_carrying import Leg
+from utak.geometry.manipulation.workspace import Workspace
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.kb.body import DIRECTIONS
+from utak.kb.mapping.patch import Patch
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
+from utak.planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
+from utak.planner.screen.projection import square_index
+from utak.planner.situation import Situation
 
 PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
 KEPT_LEVEL = 2  # certainty level of squares over which a plan is kept, though a surer one was asked for; a convention

@@ -1,16 +1,16 @@
 """Bringing an object to an end that no goal of its own asks for: out of the way, or to a spot of the task plan."""
 
-from geometry.manipulation.goals import End
-from kb.world.model import Node
-from planner.advice import Act
-from planner.deciding.stage_turn import StageTurn
-from planner.deciding.verification import look_for_more
-from planner.decision import Decision
-from planner.goals.placement import CERTAIN_OBJECT
-from planner.navigation.subgoals import Subgoal
-from planner.sights.frontiers import touch_viewpoint
-from planner.situation import Situation
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.manipulation.goals import End
+from utak.kb.world.model import Node
+from utak.planner.advice import Act
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.verification import look_for_more
+from utak.planner.decision import Decision
+from utak.planner.goals.placement import CERTAIN_OBJECT
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.sights.frontiers import touch_viewpoint
+from utak.planner.situation import Situation
+from utak.planner.subgoal_kind import SubgoalKind
 
 
 def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str = "") -> Decision | None:

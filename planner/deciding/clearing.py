@@ -5,18 +5,18 @@ It is asked only when nothing else is left to do, for an object that was moved n
 
 from collections.abc import Iterable, Sequence
 
-from geometry.manipulation.goals import End
-from kb.language.terms import Fact
-from kb.world.model import Node
-from planner.deciding.bringing import bring_to_end, carry_on
-from planner.deciding.feeling import Passages, feel_rim, feel_walls, feeling_scope, walls_to_feel
-from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
-from planner.deciding.stage_turn import StageTurn
-from planner.decision import Decision, TaskVerdict, nothing_to_do
-from planner.goals.embedded import Supposition, suppose
-from planner.goals.placement import POSSIBLE_OBJECT
-from planner.sights.walls import is_ringed
-from planner.situation import Situation
+from utak.geometry.manipulation.goals import End
+from utak.kb.language.terms import Fact
+from utak.kb.world.model import Node
+from utak.planner.deciding.bringing import bring_to_end, carry_on
+from utak.planner.deciding.feeling import Passages, feel_rim, feel_walls, feeling_scope, walls_to_feel
+from utak.planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
+from utak.planner.goals.embedded import Supposition, suppose
+from utak.planner.goals.placement import POSSIBLE_OBJECT
+from utak.planner.sights.walls import is_ringed
+from utak.planner.situation import Situation
 
 ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
 

@@ -7,14 +7,14 @@ end. A thing that is moved aside, or to a spot that the plan chose, is brought t
 from collections.abc import Sequence
 from dataclasses import replace
 
-from planner.carrying.preconditions import turn_cost
-from planner.deciding.bringing import bring_to_end
-from planner.deciding.stage_turn import StageTurn
-from planner.deciding.transport import Transporter
-from planner.decision import Decision, impossible, nothing_to_do
-from planner.situation import Situation
-from planner.tasking.intention import Intention, NextErrand
-from planner.tasking.setting import DestinationFunction, WhereGoalsHold
+from utak.planner.carrying.preconditions import turn_cost
+from utak.planner.deciding.bringing import bring_to_end
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.transport import Transporter
+from utak.planner.decision import Decision, impossible, nothing_to_do
+from utak.planner.situation import Situation
+from utak.planner.tasking.intention import Intention, NextErrand
+from utak.planner.tasking.setting import DestinationFunction, WhereGoalsHold
 
 MAX_FAILURES = 3  # errands that fail one after the other within one decision; a bound on rounds
 

@@ -7,22 +7,21 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.raster.components import components
-from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from kb.reasoning.solver import solve
-from kb.world.model import Node
-from kb.world.rooms import Door
-from planner.advice import Go
-from planner.deciding.stage_turn import StageTurn
-from planner.decision import Decision, with_command
-from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
-from planner.screen.moves import move_to, one_move_squares
-from planner.screen.projection import CostMaps, dilate, indices_to_mask
-from planner.sights.frontiers import Viewpoint
-from planner.sights.passages import SAME_LINE, WallLine, passages
-from planner.sights.walls import (
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import components
+from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
+from utak.kb.reasoning.solver import solve
+from utak.kb.world.model import Node
+from utak.kb.world.rooms import Door
+from utak.planner.advice import Go
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.decision import Decision, with_command
+from utak.planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
+from utak.planner.screen.moves import move_to, one_move_squares
+from utak.planner.screen.projection import CostMaps, dilate, indices_to_mask
+from utak.planner.sights.frontiers import Viewpoint
+from utak.planner.sights.passages import SAME_LINE, WallLine, passages
+from utak.planner.sights.walls import (
     FeelingPlace,
     FeelingScope,
     WallKind,
@@ -30,9 +29,9 @@ from planner.sights.walls import (
     is_ringed,
     walls_in_question,
 )
-from planner.situation import Situation, neck_squares
-from planner.stages import DOOR_GOALS, Stage
-from planner.subgoal_kind import SubgoalKind
+from utak.planner.situation import Situation, neck_squares
+from utak.planner.stages import DOOR_GOALS, Stage
+from utak.planner.subgoal_kind import SubgoalKind
 
 MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time
 PASSAGE_REASON = "floor is seen beyond the wall, so an opening that fills no whole square may be here"

@@ -11,17 +11,16 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY
-from geometry.raster.runs import mask_to_polygon
-from kb.body import Command, Move, Push
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT
-from kb.task.task import Task
-from kb.world.model import Node, WorldModel
-from planner.constraints import SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
-from planner.decision import Decision, TaskVerdict, impossible, nothing_to_do
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.body import Command, Move, Push
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.task.task import Task
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.constraints import SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
+from utak.planner.decision import Decision, TaskVerdict, impossible, nothing_to_do
+from utak.planner.situation import Situation
 
 OUTLINE_DOUBT = 0.25  # squares by which a measured outline may lie elsewhere, as for poses (planner.goals.near_goal)
 SHAKEN_DOUBT = 0.5  # squares by which the robot may be elsewhere after impressions contradicted each other: half a one

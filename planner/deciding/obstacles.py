@@ -7,20 +7,19 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import End
-from geometry.manipulation.plan_carrying import At, Inside
-from geometry.motion.se2 import Pose
-from geometry.raster.components import components, with_edge_neighbours
-from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
-from geometry.raster.runs import mask_to_polygon
-from kb.world.model import Node, WorldModel
-from planner.goals.embedded import Supposition, supposed_in_walls
-from planner.goals.placement import NOOK_RANGE, floor_leads_away, pull_out_pose
-from planner.navigation.routes import PlannedRoute, find_routes
-from planner.screen.projection import UNSEEN_LEVEL, CostMaps, dilate
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.manipulation.goals import End
+from utak.geometry.manipulation.plan_carrying import At, Inside
+from utak.geometry.motion.se2 import Pose
+from utak.geometry.raster.components import components, with_edge_neighbours
+from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.goals.embedded import Supposition, supposed_in_walls
+from utak.planner.goals.placement import NOOK_RANGE, floor_leads_away, pull_out_pose
+from utak.planner.navigation.routes import PlannedRoute, find_routes
+from utak.planner.screen.projection import UNSEEN_LEVEL, CostMaps, dilate
+from utak.planner.situation import Situation
 
 MIN_WAY_BEYOND = 6  # squares: an object that is moved just so far within a doorway still blocks it; a convention
 TRIAL_PUSH = 1.0  # squares by which a thing is pushed into a wall to see whether it goes; a convention

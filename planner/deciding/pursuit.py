@@ -6,25 +6,25 @@ A route is kept while it holds: its subgoal is still wanted, and the squares ahe
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from geometry.raster.geodesic import GEODESIC_UNREACHED
-from kb.body import Command, Release
-from kb.language.vocabulary import ROBOT
-from kb.world.model import WorldModel
-from planner.advice import Go, See
-from planner.carrying.plan_executor import Advice
-from planner.deciding.search import contact_subgoals
-from planner.decision import Decision, TaskVerdict, impossible, with_command
-from planner.goals.bounds import telling_squares
-from planner.navigation.fewest_moves import MOVE_COST, FewestMoves
-from planner.navigation.loop_guard import LoopGuard
-from planner.navigation.routes import PlannedRoute, choose_route, find_routes
-from planner.navigation.sticky_route import StickyRoute, to_map_squares
-from planner.navigation.subgoals import Subgoal, choose
-from planner.screen.moves import CARRYING_PACE, WALKING_PACE, halt_exactly_at, next_move
-from planner.screen.projection import SquareIndices
-from planner.situation import Situation
-from planner.stages import ORIGIN_GOALS, Stage
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.raster.geodesic import GEODESIC_UNREACHED
+from utak.kb.body import Command, Release
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.world.model import WorldModel
+from utak.planner.advice import Go, See
+from utak.planner.carrying.plan_executor import Advice
+from utak.planner.deciding.search import contact_subgoals
+from utak.planner.decision import Decision, TaskVerdict, impossible, with_command
+from utak.planner.goals.bounds import telling_squares
+from utak.planner.navigation.fewest_moves import MOVE_COST, FewestMoves
+from utak.planner.navigation.loop_guard import LoopGuard
+from utak.planner.navigation.routes import PlannedRoute, choose_route, find_routes
+from utak.planner.navigation.sticky_route import StickyRoute, to_map_squares
+from utak.planner.navigation.subgoals import Subgoal, choose
+from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, halt_exactly_at, next_move
+from utak.planner.screen.projection import SquareIndices
+from utak.planner.situation import Situation
+from utak.planner.stages import ORIGIN_GOALS, Stage
+from utak.planner.subgoal_kind import SubgoalKind
 
 
 class Pursuer:

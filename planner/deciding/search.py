@@ -4,21 +4,20 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Floats
-from kb.mapping.object_heat import chance_by_seen_squares
-from kb.task.binding import Reconciliation
-from kb.world.model import Node, WorldModel
-from kb.world.rooms import rooms_of
-from planner.goals.robot_goals import Destination
-from planner.navigation.fewest_moves import MOVE_COST, SQUARE_COST
-from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import one_move_squares
-from planner.screen.projection import CostMaps, SquareIndices, dilate
-from planner.sights import frontiers
-from planner.sights.viewpoints import TO_TAKE, Approach, inspection, sightings
-from planner.situation import Situation
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.kernels.arrays import Floats
+from utak.kb.mapping.object_heat import chance_by_seen_squares
+from utak.kb.task.binding import Reconciliation
+from utak.kb.world.model import Node, WorldModel
+from utak.kb.world.rooms import rooms_of
+from utak.planner.goals.robot_goals import Destination
+from utak.planner.navigation.fewest_moves import MOVE_COST, SQUARE_COST
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import one_move_squares
+from utak.planner.screen.projection import CostMaps, SquareIndices, dilate
+from utak.planner.sights import frontiers
+from utak.planner.sights.viewpoints import TO_TAKE, Approach, inspection, sightings
+from utak.planner.situation import Situation
+from utak.planner.subgoal_kind import SubgoalKind
 
 # All values below were tuned on random worlds (benchmarks.campaign).
 UNEXPLAINED_BONUS = -10.0  # squares: price of a look at a boundary that no straight wall explains

@@ -4,18 +4,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from geometry.kernels.arrays import XY
-from kb.body import Command
-from kb.language.terms import Fact
-from kb.task.binding import Reconciliation
-from planner.advice import Go
-from planner.carrying.plan_executor import Advice, PlanExecutor
-from planner.deciding.pursuit import Pursuer
-from planner.deciding.verification import Verifier
-from planner.decision import Decision, with_command
-from planner.navigation.subgoals import Subgoal
-from planner.situation import Situation
-from planner.stages import Stage
+from utak.geometry.kernels.arrays import XY
+from utak.kb.body import Command
+from utak.kb.language.terms import Fact
+from utak.kb.task.binding import Reconciliation
+from utak.planner.advice import Go
+from utak.planner.carrying.plan_executor import Advice, PlanExecutor
+from utak.planner.deciding.pursuit import Pursuer
+from utak.planner.deciding.verification import Verifier
+from utak.planner.decision import Decision, with_command
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 
 ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/asp/agenda.lp calls them
 

@@ -10,34 +10,33 @@ from functools import partial
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, Inside
-from kb.body import Grasp, Move, Push, Release, Turn
-from kb.language.terms import Fact
-from kb.world.model import Node
-from planner.advice import Act, Go, See
-from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.open_facts import proof_if_not_found
-from planner.carrying.plan_executor import Advice
-from planner.deciding.search import subgoals_towards
-from planner.deciding.stage_turn import StageTurn
-from planner.deciding.verification import look_before_grasp, look_for_more
-from planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
-from planner.goals.corner_goal import approach_for_goals, corner_may_move
-from planner.goals.joint import conflicting_goals, opposite_corners_reason
-from planner.goals.object_goals import goal_placement
-from planner.goals.origins import Origins
-from planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
-from planner.goals.robot_goals import unknown_destination
-from planner.navigation.subgoals import Subgoal
-from planner.per_model import PerModel
-from planner.screen.moves import orientation_is_uncertain
-from planner.situation import Situation
-from planner.skills.measure_size import SizeEstimator, least_outline
-from planner.skills.press import Presser
-from planner.stages import ORIGIN_GOALS, Stage
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import End, Inside
+from utak.kb.body import Grasp, Move, Push, Release, Turn
+from utak.kb.language.terms import Fact
+from utak.kb.world.model import Node
+from utak.planner.advice import Act, Go, See
+from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.carrying.open_facts import proof_if_not_found
+from utak.planner.carrying.plan_executor import Advice
+from utak.planner.deciding.search import subgoals_towards
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.verification import look_before_grasp, look_for_more
+from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
+from utak.planner.goals.corner_goal import approach_for_goals, corner_may_move
+from utak.planner.goals.joint import conflicting_goals, opposite_corners_reason
+from utak.planner.goals.object_goals import goal_placement
+from utak.planner.goals.origins import Origins
+from utak.planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
+from utak.planner.goals.robot_goals import unknown_destination
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.per_model import PerModel
+from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.situation import Situation
+from utak.planner.skills.measure_size import SizeEstimator, least_outline
+from utak.planner.skills.press import Presser
+from utak.planner.stages import ORIGIN_GOALS, Stage
+from utak.planner.subgoal_kind import SubgoalKind
 
 SIZE_TARGET = "size"  # the end of a push whose only purpose is to measure an object
 MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looked at first; tuned on random worlds

@@ -3,18 +3,18 @@
 from collections.abc import Sequence
 from itertools import product
 
-from geometry.manipulation.goals import At
-from geometry.motion.se2 import Pose
-from kb.body import Push
-from kb.language.terms import Fact
-from kb.world.model import Node
-from planner.deciding.bringing import bring_to_end, carry_on
-from planner.deciding.feeling import feel_rims, feeling_scope
-from planner.deciding.stage_turn import StageTurn
-from planner.decision import Decision, nothing_to_do
-from planner.sights.things import things_in_question, unfelt_rims
-from planner.sights.walls import EDGE_STEPS
-from planner.situation import Situation
+from utak.geometry.manipulation.goals import At
+from utak.geometry.motion.se2 import Pose
+from utak.kb.body import Push
+from utak.kb.language.terms import Fact
+from utak.kb.world.model import Node
+from utak.planner.deciding.bringing import bring_to_end, carry_on
+from utak.planner.deciding.feeling import feel_rims, feeling_scope
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.decision import Decision, nothing_to_do
+from utak.planner.sights.things import things_in_question, unfelt_rims
+from utak.planner.sights.walls import EDGE_STEPS
+from utak.planner.situation import Situation
 
 TRIAL_TARGET = "trial"  # the ends of plans that move a thing by a square, with the number of the direction after it
 

@@ -9,19 +9,18 @@ import math
 from dataclasses import replace
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools
-from kb.world.model import Node, WorldModel
-from kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
-from planner.carrying.infeasibility import Infeasibility
-from planner.goals.bounds import unfelt_bounds
-from planner.goals.robot_goals import robot_stands_on
-from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import orientation_is_uncertain
-from planner.sights import frontiers
-from planner.sights.viewpoints import TO_TAKE, inspection
-from planner.situation import Situation
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.kb.world.model import Node, WorldModel
+from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
+from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.goals.bounds import unfelt_bounds
+from utak.planner.goals.robot_goals import robot_stands_on
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.sights import frontiers
+from utak.planner.sights.viewpoints import TO_TAKE, inspection
+from utak.planner.situation import Situation
+from utak.planner.subgoal_kind import SubgoalKind
 
 FEW_LOOKS = 4  # squares looked from, up to which the orientation of the frame is made sure of; tuned on random worlds
 

@@ -10,14 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools
-from kb.world.model import WorldModel
-from kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
-from planner.goals.robot_goals import hidden_from
-from planner.screen.projection import shift_mask
-from planner.sights.frontiers import Viewpoint, viewpoint_of
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
+from utak.planner.goals.robot_goals import hidden_from
+from utak.planner.screen.projection import shift_mask
+from utak.planner.sights.frontiers import Viewpoint, viewpoint_of
+from utak.planner.situation import Situation
 
 WHAT_IS_FELT = "it was not felt whether something stands against the wall"
 

@@ -11,17 +11,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import End, shape_at_pose
-from geometry.manipulation.plan_carrying import Between, InCorner, Inside
-from geometry.motion.se2 import Pose, Translate
-from geometry.raster.components import components
-from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
-from geometry.raster.runs import mask_to_polygon
-from kb.language.terms import Fact
-from kb.world.model import MAX_CLEAR_PROBABILITY, Node
-from planner.goals.placement import (
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.manipulation.goals import End, shape_at_pose
+from utak.geometry.manipulation.plan_carrying import Between, InCorner, Inside
+from utak.geometry.motion.se2 import Pose, Translate
+from utak.geometry.raster.components import components
+from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.terms import Fact
+from utak.kb.world.model import MAX_CLEAR_PROBABILITY, Node
+from utak.planner.goals.placement import (
     CERTAIN_OBJECT,
     NEGLIGIBLE_LENGTH,
     KnownEnds,
@@ -32,11 +31,11 @@ from planner.goals.placement import (
     robot_can_leave,
     to_view_frame,
 )
-from planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see, wall_sides
-from planner.screen.projection import dilate
-from planner.sights.frontiers import Viewpoint, look_ahead_squares, viewpoint_of
-from planner.sights.viewpoints import TO_TAKE, Approach
-from planner.situation import Situation
+from utak.planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see, wall_sides
+from utak.planner.screen.projection import dilate
+from utak.planner.sights.frontiers import Viewpoint, look_ahead_squares, viewpoint_of
+from utak.planner.sights.viewpoints import TO_TAKE, Approach
+from utak.planner.situation import Situation
 
 CORNER_VIEW_RANGE = 6  # squares from a corner within which it is seen well (tuned on random worlds)
 CONTACT_GAP = 0.1  # squares between an object and walls that it touches, at most (convention)

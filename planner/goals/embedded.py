@@ -8,14 +8,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import shapely
-
-from geometry.kernels.arrays import Bools, Square
-from geometry.motion.se2 import Translate
-from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
-from kb.mapping.patch import patch_of
-from kb.world.model import Node
-from planner.goals.placement import possible_extension
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import Bools, Square
+from utak.geometry.motion.se2 import Translate
+from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
+from utak.kb.mapping.patch import patch_of
+from utak.kb.world.model import Node
+from utak.planner.goals.placement import possible_extension
+from utak.planner.situation import Situation
 
 
 @dataclass(frozen=True)

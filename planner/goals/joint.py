@@ -6,12 +6,11 @@ from itertools import combinations, product
 from typing import Any
 
 import shapely
-
-from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, shape_at_pose
-from kb.language.terms import Fact
-from planner.goals.placement import Placement
-from planner.goals.robot_goals import corner_side
-from planner.situation import Situation
+from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, shape_at_pose
+from utak.kb.language.terms import Fact
+from utak.planner.goals.placement import Placement
+from utak.planner.goals.robot_goals import corner_side
+from utak.planner.situation import Situation
 
 REGION_ROUNDING = 1e-6  # squares, or squares of area, that rounding errors of shapely may make (convention)
 CORNER_REACH = (1.0, 1.0)  # squares east and north of a corner within which the robot is at it (meaning of the goal)

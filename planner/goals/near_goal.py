@@ -9,16 +9,15 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.manipulation.goals import shape_at_pose
-from geometry.manipulation.plan_carrying import At, Inside
-from geometry.motion.se2 import Pose
-from geometry.raster.runs import mask_to_polygon
-from kb.language.terms import Fact, Number, Text
-from kb.language.wkt import parse_wkt
-from kb.world.model import Node
-from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, to_view_frame
-from planner.situation import Situation
+from utak.geometry.manipulation.goals import shape_at_pose
+from utak.geometry.manipulation.plan_carrying import At, Inside
+from utak.geometry.motion.se2 import Pose
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.terms import Fact, Number, Text
+from utak.kb.language.wkt import parse_wkt
+from utak.kb.world.model import Node
+from utak.planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, to_view_frame
+from utak.planner.situation import Situation
 
 BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)
 BESIDE_AXIS_DISTANCE = 0.7  # squares in each axis: less than BESIDE_DISTANCE across a corner, too (derived)

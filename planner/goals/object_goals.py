@@ -6,20 +6,20 @@ Ends (geometry.manipulation.goals) are in the view frame, in squares, as all man
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, moved
-from geometry.manipulation.plan_carrying import Between, InCorner, Inside
-from kb.language.terms import Fact
-from kb.world.model import Node
-from kb.world.rooms import Rooms
-from planner.goals.bounds import BoundsByTheWay
-from planner.goals.corner_goal import corner_placement
-from planner.goals.near_goal import beside_placement, pose_placement, start_placement
-from planner.goals.optimistic import UNSEEN_MARGIN, spread_into_unseen
-from planner.goals.placement import Placement, RegionEnds, meets_any_end, to_view_frame
-from planner.goals.references import READY_GOAL, ready_placement
-from planner.goals.robot_goals import corner_side, door_viewpoints, hidden_from, next_room_missing, room_numbers
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import End, moved
+from utak.geometry.manipulation.plan_carrying import Between, InCorner, Inside
+from utak.kb.language.terms import Fact
+from utak.kb.world.model import Node
+from utak.kb.world.rooms import Rooms
+from utak.planner.goals.bounds import BoundsByTheWay
+from utak.planner.goals.corner_goal import corner_placement
+from utak.planner.goals.near_goal import beside_placement, pose_placement, start_placement
+from utak.planner.goals.optimistic import UNSEEN_MARGIN, spread_into_unseen
+from utak.planner.goals.placement import Placement, RegionEnds, meets_any_end, to_view_frame
+from utak.planner.goals.references import READY_GOAL, ready_placement
+from utak.planner.goals.robot_goals import corner_side, door_viewpoints, hidden_from, next_room_missing, room_numbers
+from utak.planner.situation import Situation
 
 REGION_RIM = 1.0  # squares from the edge of a region in which an object may not be within it after all (convention)
 

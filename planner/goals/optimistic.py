@@ -6,10 +6,9 @@ of the view.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.raster.components import with_edge_neighbours
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.planner.situation import Situation
 
 UNSEEN_MARGIN = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned)
 OPTIMISTIC_LEVEL = 2  # certainty level of the seen squares that are assumed to be free (tuned on random worlds)

@@ -8,9 +8,9 @@ believed, a door may disappear from the map. Then two rooms seem to be one, and 
 import math
 from typing import NamedTuple
 
-from geometry.kernels.arrays import XY
-from kb.world.model import Node
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY
+from utak.kb.world.model import Node
+from utak.planner.situation import Situation
 
 DOOR_TOLERANCE = 3.0  # squares by which the believed place of a door may change while it counts as the same (tuned)
 

@@ -10,17 +10,16 @@ from typing import Any, Protocol
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import At, End, Inside, is_goal_met
-from geometry.motion.se2 import Pose, Translate
-from geometry.raster.runs import mask_to_polygon
-from kb.language.vocabulary import ROBOT
-from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
-from kb.world.model import Node, WorldModel
-from planner.screen.projection import dilate, shift_mask
-from planner.sights.frontiers import Viewpoint
-from planner.situation import Situation, neck_squares
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
+from utak.geometry.motion.se2 import Pose, Translate
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.screen.projection import dilate, shift_mask
+from utak.planner.sights.frontiers import Viewpoint
+from utak.planner.situation import Situation, neck_squares
 
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
 CERTAIN_OBJECT = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)

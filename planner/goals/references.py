@@ -9,18 +9,17 @@ from dataclasses import replace
 from functools import reduce
 
 import numpy as np
-
-from geometry.raster.runs import mask_to_polygon
-from kb.language.terms import Fact, Symbol
-from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from kb.world.model import Node
-from planner.goals.near_goal import touching
-from planner.goals.placement import Placement, RegionEnds, to_view_frame
-from planner.goals.robot_goals import Destination, destination, jointly
-from planner.navigation.encircle import encircling_routes
-from planner.screen.projection import dilate, indices_to_mask
-from planner.situation import Situation
-from planner.stages import Stage
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.terms import Fact, Symbol
+from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
+from utak.kb.world.model import Node
+from utak.planner.goals.near_goal import touching
+from utak.planner.goals.placement import Placement, RegionEnds, to_view_frame
+from utak.planner.goals.robot_goals import Destination, destination, jointly
+from utak.planner.navigation.encircle import encircling_routes
+from utak.planner.screen.projection import dilate, indices_to_mask
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 
 RELATIONS = ("at", "beside")  # goals whose second argument may be a thing: then the two may change places
 READY_GOAL = "ready"  # ready(x, G): thing x lies so that goal G of the robot can hold

@@ -11,15 +11,14 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import with_edge_neighbours
-from kb.language.terms import Fact, Symbol
-from kb.world.corners import Corner
-from kb.world.model import WorldModel
-from kb.world.rooms import Rooms
-from planner.screen.projection import SquareIndices, dilate, square_index
-from planner.sights.frontiers import (
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.language.terms import Fact, Symbol
+from utak.kb.world.corners import Corner
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import Rooms
+from utak.planner.screen.projection import SquareIndices, dilate, square_index
+from utak.planner.sights.frontiers import (
     VIEW_SPACING,
     Viewpoint,
     door_jambs,
@@ -29,7 +28,7 @@ from planner.sights.frontiers import (
     unreached_rooms,
     with_chances,
 )
-from planner.situation import Situation
+from utak.planner.situation import Situation
 
 # How much further towards a corner (east and north added, in squares) unseen floor may go. All were tuned on random
 # worlds (benchmarks.campaign).

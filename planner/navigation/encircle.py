@@ -8,12 +8,11 @@ rotation. The choice between them is made like any other choice among topologica
 from collections.abc import Sequence
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Floats, Square
-from geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
-from kb.world.model import Node
-from planner.navigation.routes import PlannedRoute
-from planner.screen.projection import UNSEEN_LEVEL, CostMaps
+from utak.geometry.kernels.arrays import XY, Floats, Square
+from utak.geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
+from utak.kb.world.model import Node
+from utak.planner.navigation.routes import PlannedRoute
+from utak.planner.screen.projection import UNSEEN_LEVEL, CostMaps
 
 
 def winding_number(track: Sequence[XY], node: Node) -> int:

@@ -9,14 +9,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, Square
-from geometry.raster.line_of_sight import straight
-from planner.navigation.routes import PlannedRoute
-from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import CARRYING_PACE, one_move_squares
-from planner.screen.projection import CostMaps, SquareIndices
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.kernels.arrays import Bools, Square
+from utak.geometry.raster.line_of_sight import straight
+from utak.planner.navigation.routes import PlannedRoute
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import CARRYING_PACE, one_move_squares
+from utak.planner.screen.projection import CostMaps, SquareIndices
+from utak.planner.subgoal_kind import SubgoalKind
 
 MOVE_COST, SQUARE_COST = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares (tuned)
 SEEN_SQUARE_VALUE = 0.05  # squares of way that an unseen square in sight from the turn is worth (tuned)

@@ -8,12 +8,12 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import astuple
 
-from geometry.kernels.arrays import Square
-from kb.body import Command
-from kb.mapping.occupancy import OPEN
-from kb.world.model import WorldModel
-from planner.navigation.sticky_route import to_map_squares
-from planner.navigation.subgoals import Subgoal
+from utak.geometry.kernels.arrays import Square
+from utak.kb.body import Command
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.world.model import WorldModel
+from utak.planner.navigation.sticky_route import to_map_squares
+from utak.planner.navigation.subgoals import Subgoal
 
 LOOP_COST = 25.0  # squares by which each loop makes a subgoal dearer (tuned on random worlds)
 MAX_LOOPS = 4  # loops after which a subgoal is given up (tuned on random worlds)

@@ -9,17 +9,16 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry import Screen
-from geometry.kernels.arrays import XY, Bools, Floats, Square
-from geometry.pathfinders.grid_astar import grid_path
-from geometry.pathfinders.visibility_graph import visibility_path
-from kb.reasoning.solver import solve
-from kb.world.model import WorldModel
-from kb.world.rooms import Door, went_through
-from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE
-from planner.screen.projection import CostMaps, SquareIndices
-from planner.screen.sweeps import squares_along
+from utak.geometry import Screen
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Square
+from utak.geometry.pathfinders.grid_astar import grid_path
+from utak.geometry.pathfinders.visibility_graph import visibility_path
+from utak.kb.reasoning.solver import solve
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import Door, went_through
+from utak.planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE
+from utak.planner.screen.projection import CostMaps, SquareIndices
+from utak.planner.screen.sweeps import squares_along
 
 MAX_ROUTES = 4  # topologically distinct routes that are offered for a choice (tuned on random worlds)
 NO_DOOR_PRICES: Mapping[str, float] = {}

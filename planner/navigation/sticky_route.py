@@ -4,12 +4,11 @@ Both are kept in the map frame, so that they stay valid when the view grows.
 """
 
 import numpy as np
-
-from geometry.kernels.arrays import Square
-from kb.world.model import WorldModel
-from planner.navigation.routes import PlannedRoute
-from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import CostMaps, SquareIndices
+from utak.geometry.kernels.arrays import Square
+from utak.kb.world.model import WorldModel
+from utak.planner.navigation.routes import PlannedRoute
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.projection import CostMaps, SquareIndices
 
 
 class StickyRoute:

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.reasoning.solver import solve
-from planner.screen.projection import CostMaps, SquareIndices
-from planner.subgoal_kind import SubgoalKind
+from utak.kb.reasoning.solver import solve
+from utak.planner.screen.projection import CostMaps, SquareIndices
+from utak.planner.subgoal_kind import SubgoalKind
 
 PLANNER_ASP = Path(__file__).resolve().parent.parent / "asp"  # the folder of the planner's encodings
 TENTHS_PER_SQUARE = 10  # the encodings count lengths and costs in tenths of squares

@@ -10,22 +10,21 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, goal_key, moved
-from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
-from geometry.motion.se2 import Pose, Rotate, Translate
-from geometry.raster.components import components
-from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
-from geometry.raster.rasterize import squares
-from kb.language.vocabulary import ROBOT
-from kb.world.model import Node
-from planner.carrying.infeasibility import how_narrow
-from planner.carrying.manipulation_oracle import swept_squares
-from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
-from planner.oracles.problem import Lying, TableState, TaskProblem
-from planner.screen.projection import UNSEEN_LEVEL, dilate
-from planner.situation import Situation, neck_squares
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import End, goal_key, moved
+from utak.geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
+from utak.geometry.motion.se2 import Pose, Rotate, Translate
+from utak.geometry.raster.components import components
+from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from utak.geometry.raster.rasterize import squares
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.world.model import Node
+from utak.planner.carrying.infeasibility import how_narrow
+from utak.planner.carrying.manipulation_oracle import swept_squares
+from utak.planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
+from utak.planner.oracles.problem import Lying, TableState, TaskProblem
+from utak.planner.screen.projection import UNSEEN_LEVEL, dilate
+from utak.planner.situation import Situation, neck_squares
 
 MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
 

@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from geometry.kernels.arrays import XY
-from geometry.manipulation.goals import At, End
-from geometry.motion.se2 import Pose
-from kb.world.model import Node
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.goals import At, End
+from utak.geometry.motion.se2 import Pose
+from utak.kb.world.model import Node
 
 HERE = "here"  # the place of a thing where it lay at first, and of the robot where it is now
 ANYWHERE = "anywhere"  # in place of an origin: a way that was refuted from two places counts as refuted from all

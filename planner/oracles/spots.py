@@ -13,12 +13,11 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Ints
-from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
-from geometry.raster.rasterize import squares
-from planner.screen.projection import dilate
+from utak.geometry.kernels.arrays import Bools, Ints
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from utak.geometry.raster.rasterize import squares
+from utak.planner.screen.projection import dilate
 
 SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
 DIAGONALS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # (rows, columns) towards the corners of a floor

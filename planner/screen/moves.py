@@ -9,17 +9,16 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools, Square
-from geometry.raster.line_of_sight import straight
-from geometry.raster.winding import crossings_by_step
-from kb.body import Command, Move
-from kb.localisation.hypotheses.walk_outcomes import GRID_LINE_TOLERANCE, snap_to_line
-from kb.perception.frame import turned
-from kb.world.model import WorldModel
-from planner.screen.projection import CostMaps, dilate
-from planner.screen.sweeps import line_sweep_is_free, sweep_is_free
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.kernels.arrays import XY, Bools, Square
+from utak.geometry.raster.line_of_sight import straight
+from utak.geometry.raster.winding import crossings_by_step
+from utak.kb.body import Command, Move
+from utak.kb.localisation.hypotheses.walk_outcomes import GRID_LINE_TOLERANCE, snap_to_line
+from utak.kb.perception.frame import turned
+from utak.kb.world.model import WorldModel
+from utak.planner.screen.projection import CostMaps, dilate
+from utak.planner.screen.sweeps import line_sweep_is_free, sweep_is_free
+from utak.planner.subgoal_kind import SubgoalKind
 
 TIGHT_MOVE_LENGTH = 6  # squares up to which a move keeps no clearance, even while the orientation is uncertain (tuned)
 ORIENTATION_TOLERANCE = math.radians(5)  # radians up to which the map frame's orientation counts as settled (tuned)

@@ -13,13 +13,12 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.raster.components import with_edge_neighbours
-from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach
-from kb.mapping.occupancy import FREE, OPEN
-from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
-from planner.screen.unseen_gain import expected_gain
+from utak.geometry.kernels.arrays import XY, Bools, Floats
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach
+from utak.kb.mapping.occupancy import FREE, OPEN
+from utak.kb.world.model import MAX_FREE_PROBABILITY, WorldModel
+from utak.planner.screen.unseen_gain import expected_gain
 
 T = TypeVar("T", bound=np.generic)
 SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + column

@@ -12,9 +12,8 @@ from functools import cache
 from itertools import pairwise
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools, Longs
-from geometry.kernels.arrays import Square as Square
+from utak.geometry.kernels.arrays import XY, Bools, Longs
+from utak.geometry.kernels.arrays import Square as Square
 
 SWEEP_TOLERANCE = 1e-9  # squares; smaller overlaps are rounding errors of floating point (convention)
 

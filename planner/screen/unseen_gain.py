@@ -7,9 +7,8 @@ VERGE_WEIGHT when they are occupied only. The counts within the reach of the eye
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.kernels.arrays import Bools, Floats, Longs
-from kb.mapping.occupancy import MapView
+from utak.geometry.kernels.arrays import Bools, Floats, Longs
+from utak.kb.mapping.occupancy import MapView
 
 GAIN_REACH = 14  # squares, in rows and columns, within which an unseen square comes into sight: below the retina's 16
 VERGE_WEIGHT = 0.1  # the weight of an unseen square beside the verge, where one beside floor counts 1 (tuned)

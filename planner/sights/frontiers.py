@@ -10,13 +10,12 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Labels
-from geometry.raster.components import components, with_edge_neighbours
-from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
-from kb.world.model import Node
-from kb.world.rooms import Door
-from planner.screen.projection import (
+from utak.geometry.kernels.arrays import Bools, Labels
+from utak.geometry.raster.components import components, with_edge_neighbours
+from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
+from utak.kb.world.model import Node
+from utak.kb.world.rooms import Door
+from utak.planner.screen.projection import (
     SURELY_OCCUPIED,
     CostMaps,
     SquareIndices,
@@ -24,7 +23,7 @@ from planner.screen.projection import (
     indices_to_mask,
     square_index,
 )
-from planner.screen.unseen_gain import VERGE_WEIGHT
+from utak.planner.screen.unseen_gain import VERGE_WEIGHT
 
 FOVEA_RANGE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
 MIDDLE_ZONE_RANGE = 7  # squares from which a square lies within the middle zone of the retina (derived: offsets -8..7)

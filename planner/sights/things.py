@@ -1,14 +1,13 @@
 """Things that may be several that touch, and the floor from which their rims are felt all round."""
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.raster.components import with_edge_neighbours
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR
-from kb.world.model import Node
-from planner.screen.projection import CostMaps
-from planner.sights.frontiers import Viewpoint, elsewhere_touch_viewpoint
-from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from utak.kb.world.model import Node
+from utak.planner.screen.projection import CostMaps
+from utak.planner.sights.frontiers import Viewpoint, elsewhere_touch_viewpoint
+from utak.planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 
 
 def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:

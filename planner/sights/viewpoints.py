@@ -7,15 +7,14 @@ move where that is possible, also over squares that are only likely free: if one
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Floats
-from geometry.raster.components import components, with_edge_neighbours
-from kb.mapping.occupancy import OPEN
-from kb.world.model import Node
-from planner.screen.moves import one_move_squares
-from planner.screen.projection import SURELY_OCCUPIED, CostMaps, SquareIndices, dilate, indices_to_mask, shift_mask
-from planner.screen.unseen_gain import window_sums
-from planner.sights.frontiers import (
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.raster.components import components, with_edge_neighbours
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.world.model import Node
+from utak.planner.screen.moves import one_move_squares
+from utak.planner.screen.projection import SURELY_OCCUPIED, CostMaps, SquareIndices, dilate, indices_to_mask, shift_mask
+from utak.planner.screen.unseen_gain import window_sums
+from utak.planner.sights.frontiers import (
     EQUAL_VALUE_SHARE,
     FOVEA_RANGE,
     MIDDLE_ZONE_RANGE,
@@ -24,7 +23,7 @@ from planner.sights.frontiers import (
     group_by_label,
     unlooked_floor,
 )
-from planner.subgoal_kind import SubgoalKind
+from utak.planner.subgoal_kind import SubgoalKind
 
 MIN_SIGHTING_PROBABILITY = 0.1  # a place that holds a wanted object with at least this is worth a look (tuned)
 MIN_APPROACH_PROBABILITY = 0.5  # with at least this probability the robot goes right up to it (tuned on random worlds)

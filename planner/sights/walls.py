@@ -13,15 +13,14 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Square
-from geometry.raster.components import components, with_edge_neighbours
-from geometry.raster.runs import runs_along_rows
-from kb.perception.interpretation import LONGEST_OBJECT
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR
-from kb.world.model import WorldModel
-from planner.screen.projection import CostMaps, dilate, shift_mask
-from planner.sights.frontiers import MIN_UNREACHED_SQUARES
+from utak.geometry.kernels.arrays import Bools, Square
+from utak.geometry.raster.components import components, with_edge_neighbours
+from utak.geometry.raster.runs import runs_along_rows
+from utak.kb.perception.interpretation import LONGEST_OBJECT
+from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from utak.kb.world.model import WorldModel
+from utak.planner.screen.projection import CostMaps, dilate, shift_mask
+from utak.planner.sights.frontiers import MIN_UNREACHED_SQUARES
 
 EDGE_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 DOORWAY_WIDTH = 3  # squares in a row that are felt at once; a thing as wide as a usual doorway covers so many (derived)

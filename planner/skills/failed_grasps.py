@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Floats
-from geometry.motion.se2 import Rotate
-from kb.perception.frame import CENTRE
-from kb.world.model import Node, WorldModel
+from utak.geometry.kernels.arrays import XY, Floats
+from utak.geometry.motion.se2 import Rotate
+from utak.kb.perception.frame import CENTRE
+from utak.kb.world.model import Node, WorldModel
 
 MAX_RETRIES = 3  # times that the failed grasps of one object are tried again; a bound on time
 

@@ -8,16 +8,15 @@ point where they do, until they stop it.
 import math
 
 import numpy as np
-
-from geometry.kernels.arrays import XY
-from kb.body import Command, Move
-from kb.world.corners import Corner, known_floor
-from planner.goals.robot_goals import corner_side, wall_sides
-from planner.screen.moves import halt_exactly_at, move_to, orientation_is_uncertain
-from planner.screen.projection import CostMaps
-from planner.screen.sweeps import Square, squares_met
-from planner.situation import Situation
-from planner.stages import Stage
+from utak.geometry.kernels.arrays import XY
+from utak.kb.body import Command, Move
+from utak.kb.world.corners import Corner, known_floor
+from utak.planner.goals.robot_goals import corner_side, wall_sides
+from utak.planner.screen.moves import halt_exactly_at, move_to, orientation_is_uncertain
+from utak.planner.screen.projection import CostMaps
+from utak.planner.screen.sweeps import Square, squares_met
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 
 HALT_DISTANCE = 0.01  # squares from both lines of the corner's square at which the robot halts; a convention
 STRAIGHT_LENGTH = 3  # squares beside a corner along which a wall is straight if it stays in its row; derived for 1 in 3

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
-from geometry.manipulation.goals import At, shape_at_pose
-from geometry.motion.se2 import Pose
-from kb.objects.subcell_extent import SubcellExtent, inset_outline, last_row_coverage
-from kb.world.model import Node
+from utak.geometry.manipulation.goals import At, shape_at_pose
+from utak.geometry.motion.se2 import Pose
+from utak.kb.objects.subcell_extent import SubcellExtent, inset_outline, last_row_coverage
+from utak.kb.world.model import Node
 
 INSET_TOLERANCE = 0.12  # squares within which the inset of a side counts as known: an eighth; tuned on random worlds
 FIRST_STEP = 0.1  # squares of the first push: it tells an object of whole squares from all others; a convention

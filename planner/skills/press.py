@@ -8,15 +8,14 @@ walls is in the corner, whatever is believed of its outline then.
 import math
 
 import numpy as np
-
-from geometry.kernels.arrays import XY
-from geometry.motion.se2 import Translate
-from kb.language.terms import Fact
-from kb.world.model import Node, WorldModel
-from planner.advice import Act, unplanned_act
-from planner.goals.placement import Placement
-from planner.goals.robot_goals import corner_side
-from planner.situation import Situation
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.motion.se2 import Translate
+from utak.kb.language.terms import Fact
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.advice import Act, unplanned_act
+from utak.planner.goals.placement import Placement
+from utak.planner.goals.robot_goals import corner_side
+from utak.planner.situation import Situation
 
 STOPPED_SHORT = 0.1  # squares by which a push that was stopped falls short at least; a convention, above rounding
 CORNER_SHIFT = 2.0  # squares by which a corner may seem to move when a press shows more of its walls; tuned

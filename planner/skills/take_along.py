@@ -8,21 +8,20 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Floats
-from geometry.manipulation.goals import End
-from geometry.manipulation.plan_carrying import Inside
-from geometry.manipulation.workspace import Workspace
-from geometry.motion.first_contact import ContactBody
-from geometry.motion.se2 import Translate
-from geometry.raster.components import components
-from geometry.raster.runs import mask_to_polygon
-from kb.world.model import Node
-from planner.goals.placement import floor_leads_away, forbidden_squares, meets_any_end, to_view_frame
-from planner.screen.moves import CARRYING_PACE
-from planner.screen.projection import SquareIndices, dilate, indices_to_mask
-from planner.situation import Situation
-from planner.subgoal_kind import SubgoalKind
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.manipulation.goals import End
+from utak.geometry.manipulation.plan_carrying import Inside
+from utak.geometry.manipulation.workspace import Workspace
+from utak.geometry.motion.first_contact import ContactBody
+from utak.geometry.motion.se2 import Translate
+from utak.geometry.raster.components import components
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.world.model import Node
+from utak.planner.goals.placement import floor_leads_away, forbidden_squares, meets_any_end, to_view_frame
+from utak.planner.screen.moves import CARRYING_PACE
+from utak.planner.screen.projection import SquareIndices, dilate, indices_to_mask
+from utak.planner.situation import Situation
+from utak.planner.subgoal_kind import SubgoalKind
 
 VIEWPOINT_RADIUS = 4  # squares from a viewpoint within which an object is brought; a convention
 MAX_TRIED_PUSHES = 64  # squares of a viewpoint that are tried; a bound on time

@@ -5,11 +5,10 @@ import math
 
 import numpy as np
 import shapely
-
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Translate
-from kb.mapping.occupancy import OCCUPIED
-from kb.world.model import Node, WorldModel
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Translate
+from utak.kb.mapping.occupancy import OCCUPIED
+from utak.kb.world.model import Node, WorldModel
 
 RETREAT = 1.0  # squares by which an object is drawn back; a convention: one square shows whether it moved
 ROOM_AHEAD = 3.0  # squares beyond the stop for which there must be room afterwards; a convention

@@ -7,18 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
-from geometry.raster.rasterize import squares
-from kb.language.vocabulary import ROBOT
-from kb.world.facts import appearance_facts
-from kb.world.model import hundredths
-from kb.world.rooms import NO_ROOM
-from planner.oracles.problem import HERE, PlacedGoal, TaskProblem
-from planner.oracles.spots import SPOT_SLACK
-from planner.situation import Situation
-from planner.tasking.task_plan import RefutedStep
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
+from utak.geometry.raster.rasterize import squares
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.world.facts import appearance_facts
+from utak.kb.world.model import hundredths
+from utak.kb.world.rooms import NO_ROOM
+from utak.planner.oracles.problem import HERE, PlacedGoal, TaskProblem
+from utak.planner.oracles.spots import SPOT_SLACK
+from utak.planner.situation import Situation
+from utak.planner.tasking.task_plan import RefutedStep
 
 OVERLAP_ROUNDING = 1e-6  # squares by which two places may seem to overlap, though they only touch
 

@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from geometry.kernels.arrays import XY
-from planner.oracles.problem import HERE
-from planner.situation import Situation
-from planner.tasking.task_plan import Errand
+from utak.geometry.kernels.arrays import XY
+from utak.planner.oracles.problem import HERE
+from utak.planner.situation import Situation
+from utak.planner.tasking.task_plan import Errand
 
 MAX_DISPLACEMENT = 0.5  # squares by which a thing may lie elsewhere than at a place: half a square
 ELSEWHERE = "elsewhere"  # the place of a thing that lies neither where it was at first nor where an errand put it

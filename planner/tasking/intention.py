@@ -6,38 +6,37 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, moved
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT
-from kb.reasoning.user_rules import rules_reach
-from kb.world.model import Node
-from planner.goals.placement import meets_end
-from planner.oracles.carry import CarryOracle
-from planner.oracles.problem import HERE, TaskProblem
-from planner.screen.projection import UNSEEN_LEVEL
-from planner.situation import Situation
-from planner.stages import Stage
-from planner.tasking.history import MAX_DISPLACEMENT, DoneErrands
-from planner.tasking.proposal import TASK_ENCODING
-from planner.tasking.rule_effects import (
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.manipulation.goals import End, moved
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.reasoning.user_rules import rules_reach
+from utak.kb.world.model import Node
+from utak.planner.goals.placement import meets_end
+from utak.planner.oracles.carry import CarryOracle
+from utak.planner.oracles.problem import HERE, TaskProblem
+from utak.planner.screen.projection import UNSEEN_LEVEL
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
+from utak.planner.tasking.history import MAX_DISPLACEMENT, DoneErrands
+from utak.planner.tasking.proposal import TASK_ENCODING
+from utak.planner.tasking.rule_effects import (
     doors_at,
     doors_led_round,
     facts_rules_read,
     rules_alone_leave_no_plan,
     rules_without_plan,
 )
-from planner.tasking.search import make_plan
-from planner.tasking.setting import (
+from utak.planner.tasking.search import make_plan
+from utak.planner.tasking.setting import (
     WhereGoalsHold,
     goal_of_place,
     place_name,
     problem_of,
     wish_of_place,
 )
-from planner.tasking.settling import plan_that_settles, step_that_settles
-from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+from utak.planner.tasking.settling import plan_that_settles, step_that_settles
+from utak.planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 MORE_FLOOR = 1.25  # times the floor for which there was no plan, with which it is worth to look for one; a convention
 

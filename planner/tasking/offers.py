@@ -6,16 +6,15 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Ints
-from geometry.manipulation.goals import End, Inside
-from geometry.motion.se2 import Translate
-from geometry.raster.rasterize import squares
-from geometry.raster.runs import mask_to_polygon
-from kb.world.rooms import NO_ROOM
-from planner.oracles.carry import FloorKind, Floors
-from planner.oracles.problem import TaskProblem
-from planner.oracles.spots import (
+from utak.geometry.kernels.arrays import Bools, Ints
+from utak.geometry.manipulation.goals import End, Inside
+from utak.geometry.motion.se2 import Translate
+from utak.geometry.raster.rasterize import squares
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.world.rooms import NO_ROOM
+from utak.planner.oracles.carry import FloorKind, Floors
+from utak.planner.oracles.problem import TaskProblem
+from utak.planner.oracles.spots import (
     SPOT_SLACK,
     KeptWay,
     corner_spots,

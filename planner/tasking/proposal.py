@@ -5,10 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.language.vocabulary import ROBOT
-from kb.reasoning.solver import solve_within
-from planner.navigation.subgoals import PLANNER_ASP
-from planner.tasking.task_plan import Errand
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.reasoning.solver import solve_within
+from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.tasking.task_plan import Errand
 
 TASK_ENCODING = PLANNER_ASP / "task"  # a folder, with a file for each action
 MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; a bound on work, so that all machines do the same

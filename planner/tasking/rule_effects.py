@@ -5,18 +5,18 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any, NamedTuple
 
-from geometry.kernels.arrays import XY
-from kb.reasoning.encodings import BoundedAnswer
-from kb.reasoning.solver import solve_within
-from kb.reasoning.user_rules import predicates_read, rules_reach, rules_to_blame, world_facts_named
-from kb.tracing.decisions import record_decisions
-from kb.world.model import hundredths
-from kb.world.place_names import SAME_DOOR
-from planner.oracles.problem import TableState, TaskProblem
-from planner.situation import Situation
-from planner.tasking.facts import problem_facts
-from planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
-from planner.tasking.search import MadePlan
+from utak.geometry.kernels.arrays import XY
+from utak.kb.reasoning.encodings import BoundedAnswer
+from utak.kb.reasoning.solver import solve_within
+from utak.kb.reasoning.user_rules import predicates_read, rules_reach, rules_to_blame, world_facts_named
+from utak.kb.tracing.decisions import record_decisions
+from utak.kb.world.model import hundredths
+from utak.kb.world.place_names import SAME_DOOR
+from utak.planner.oracles.problem import TableState, TaskProblem
+from utak.planner.situation import Situation
+from utak.planner.tasking.facts import problem_facts
+from utak.planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
+from utak.planner.tasking.search import MadePlan
 
 ANY_ROOM = "unseen_room"  # a room that nobody has seen, behind a door of which nothing is known
 DOOR_COMMANDS = 1  # that planner/asp/task/go.lp reckons for a pass through a door

@@ -10,24 +10,23 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import End
-from geometry.motion.se2 import Translate
-from kb.language.vocabulary import ROBOT
-from kb.reasoning.encodings import encoding_constant
-from kb.reasoning.user_rules import rules_reach
-from kb.task.binding import NO_MEANINGS
-from kb.tracing.decisions import record_decisions
-from planner.carrying.manipulation_oracle import swept_squares
-from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
-from planner.oracles.problem import ANYWHERE, HERE, TableState, TaskProblem
-from planner.situation import Situation
-from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts, things_in_way
-from planner.tasking.offers import Offers, with_returns
-from planner.tasking.proposal import TASK_ENCODING, Proposal, propose
-from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
-from planner.under_way import UNDER_WAY
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.manipulation.goals import End
+from utak.geometry.motion.se2 import Translate
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.reasoning.encodings import encoding_constant
+from utak.kb.reasoning.user_rules import rules_reach
+from utak.kb.task.binding import NO_MEANINGS
+from utak.kb.tracing.decisions import record_decisions
+from utak.planner.carrying.manipulation_oracle import swept_squares
+from utak.planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
+from utak.planner.oracles.problem import ANYWHERE, HERE, TableState, TaskProblem
+from utak.planner.situation import Situation
+from utak.planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts, things_in_way
+from utak.planner.tasking.offers import Offers, with_returns
+from utak.planner.tasking.proposal import TASK_ENCODING, Proposal, propose
+from utak.planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+from utak.planner.under_way import UNDER_WAY
 
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise

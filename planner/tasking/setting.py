@@ -5,22 +5,21 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import XY
-from geometry.manipulation.goals import End
-from geometry.motion.se2 import Pose
-from kb.language.terms import Fact
-from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from kb.objects.held_object import is_grid_aligned
-from kb.reasoning.user_rules import rules_reach
-from kb.world.model import Node
-from kb.world.rooms import NO_ROOM
-from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
-from planner.goals.robot_goals import Destination, jointly, robot_stands_on
-from planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
-from planner.situation import Situation
-from planner.stages import Stage
-from planner.tasking.history import DoneErrands
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.goals import End
+from utak.geometry.motion.se2 import Pose
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
+from utak.kb.objects.held_object import is_grid_aligned
+from utak.kb.reasoning.user_rules import rules_reach
+from utak.kb.world.model import Node
+from utak.kb.world.rooms import NO_ROOM
+from utak.planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
+from utak.planner.goals.robot_goals import Destination, jointly, robot_stands_on
+from utak.planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
+from utak.planner.tasking.history import DoneErrands
 
 NOTHING_DONE = DoneErrands()  # of a run in which nothing was done
 RULED_ENCODING = "task"  # the encoding of task plans, without `.lp`

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from typing import Any
 
-from kb.reasoning.user_rules import rules_to_blame
-from planner.oracles.problem import TaskProblem
-from planner.situation import Situation
-from planner.stages import Stage
-from planner.tasking.facts import Answers, answer_facts, goal_facts, overlaps_of, problem_facts
-from planner.tasking.proposal import TASK_ENCODING, UNMET_PLAN, propose
-from planner.tasking.setting import waiting_goal
-from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+from utak.kb.reasoning.user_rules import rules_to_blame
+from utak.planner.oracles.problem import TaskProblem
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
+from utak.planner.tasking.facts import Answers, answer_facts, goal_facts, overlaps_of, problem_facts
+from utak.planner.tasking.proposal import TASK_ENCODING, UNMET_PLAN, propose
+from utak.planner.tasking.setting import waiting_goal
+from utak.planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 
 def plan_that_settles(

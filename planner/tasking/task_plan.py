@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from geometry.kernels.arrays import XY
-from kb.language.vocabulary import ROBOT
-from planner.oracles.carry import Certainty
-from planner.oracles.problem import ANYWHERE, PlacedGoal
+from utak.geometry.kernels.arrays import XY
+from utak.kb.language.vocabulary import ROBOT
+from utak.planner.oracles.carry import Certainty
+from utak.planner.oracles.problem import ANYWHERE, PlacedGoal
 
 GOAL_PLACE = re.compile(r"(g[0-9]+)_")  # the beginning of the name of a place where a goal holds
 

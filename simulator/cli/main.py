@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from types import FrameType
 
-from utak_command import exit_at_ctrl_c, install_package_finder
+from utak.launcher import exit_at_ctrl_c, install_package_finder
 
 REPEAT_DELAY_SECONDS = 0.01  # until Python no longer drops exceptions; a convention
 
@@ -17,8 +17,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         exit_at_ctrl_c()
     try:
         install_package_finder()
-        from simulator.cli import parsing  # noqa: F401 (all imports happen before anything is done)
-        from simulator.terminal.streams import guard_streams, open_missing_streams
+        from utak.simulator.cli import parsing  # noqa: F401 (all imports happen before anything is done)
+        from utak.simulator.terminal.streams import guard_streams, open_missing_streams
 
         if arguments is None:
             open_missing_streams()
@@ -101,10 +101,10 @@ def signal_again() -> None:
 
 def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
     """Run with guarded streams, report errors and return the exit code."""
-    from kb.language.diagnostics import BadInputError, CannotOpenError
-    from simulator.terminal import exits
-    from simulator.terminal.outcome import bug_message
-    from simulator.terminal.streams import StreamError
+    from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+    from utak.simulator.terminal import exits
+    from utak.simulator.terminal.outcome import bug_message
+    from utak.simulator.terminal.streams import StreamError
 
     try:
         code = _parse_and_execute(arguments)
@@ -130,8 +130,8 @@ def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrup
 
 def _parse_and_execute(arguments: Sequence[str] | None) -> int:
     """Parse the command line, run the subcommand and return its exit code."""
-    from simulator.cli.parsing import build_parser
-    from simulator.terminal import exits
+    from utak.simulator.cli.parsing import build_parser
+    from utak.simulator.terminal import exits
 
     try:
         options = build_parser().parse_args(arguments)
@@ -149,6 +149,6 @@ def _print_error(code: int, message: str) -> int:
 
 def _final_code(code: int, lost: str) -> int:
     """Return the exit code, or that for lost output when a message could not be printed."""
-    from simulator.terminal import exits
+    from utak.simulator.terminal import exits
 
     return exits.LOST_OUTPUT if lost and code == exits.SUCCESS else code

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-from kb.language.diagnostics import did_you_mean
-from simulator.cli.commands import explain, plan, query, repl, replay, routes, run, schema, sweep, test, warm
-from simulator.cli.commands.files import check, import_scenario, new, show
+from utak.kb.language.diagnostics import did_you_mean
+from utak.simulator.cli.commands import explain, plan, query, repl, replay, routes, run, schema, sweep, test, warm
+from utak.simulator.cli.commands.files import check, import_scenario, new, show
 
 # In the order of the help text.
 COMMANDS = (

@@ -13,10 +13,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.source_text import Source, lies_outside, read_bytes
-from simulator.episode.output_files import GrowingFile, is_episode
-from simulator.episode.schema import EPISODE_VERSION, KeyPath, column, complaints
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.source_text import Source, lies_outside, read_bytes
+from utak.simulator.episode.output_files import GrowingFile, is_episode
+from utak.simulator.episode.schema import EPISODE_VERSION, KeyPath, column, complaints
 
 STANDARD_OUTPUT = "-"  # the value of --log for the standard output
 MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention

@@ -12,8 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from kb.language.diagnostics import CannotOpenError
-from kb.language.operating_system import WRITE_FLAGS, lock_file
+from utak.kb.language.diagnostics import CannotOpenError
+from utak.kb.language.operating_system import WRITE_FLAGS, lock_file
 
 HEAD_BYTES = 4096  # first bytes of a file, from which its kind is told
 EPISODE_START = b'{"utak":"episode"'  # the first bytes of every episode

@@ -13,14 +13,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.reader import parse_facts
-from kb.language.source_text import source_from_bytes
-from kb.reasoning.encodings import encoding_path, encoding_text
-from kb.reasoning.user_rules import read_rules
-from simulator.episode.episode import Episode, EpisodeLine
-from simulator.episode.record import rules_sum
-from simulator.scenario.folder_writer import check_folder, whole_folder
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import source_from_bytes
+from utak.kb.reasoning.encodings import encoding_path, encoding_text
+from utak.kb.reasoning.user_rules import read_rules
+from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.episode.record import rules_sum
+from utak.simulator.scenario.folder_writer import check_folder, whole_folder
 
 INDEX_NAME = "index.jsonl"
 # A comment, a text in quotes, or a negated atom with its name and arguments.

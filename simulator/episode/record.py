@@ -6,20 +6,19 @@ from dataclasses import replace
 from typing import Any
 
 import shapely
-
-from geometry.motion.se2 import Motion, Translate
-from kb.body import Command, Grasp, Release, Turn
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.reader import facts_from_text, parse_facts
-from kb.language.source_text import Source, read_source, source_from_bytes
-from kb.language.vocabulary import GOAL_VOCABULARY, START_VOCABULARY, check_facts
-from kb.task.task import Task, task_of
-from kb.world.facts import binding_facts
-from simulator.episode.episode import EpisodeLine
-from simulator.episode.schema import EPISODE_VERSION
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
-from simulator.world.world import Thing, World
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.kb.body import Command, Grasp, Release, Turn
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.reader import facts_from_text, parse_facts
+from utak.kb.language.source_text import Source, read_source, source_from_bytes
+from utak.kb.language.vocabulary import GOAL_VOCABULARY, START_VOCABULARY, check_facts
+from utak.kb.task.task import Task, task_of
+from utak.kb.world.facts import binding_facts
+from utak.simulator.episode.episode import EpisodeLine
+from utak.simulator.episode.schema import EPISODE_VERSION
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.world.world import Thing, World
 
 SETTING_NAMES = ("seed", "noise", "paths", "max_steps", "pull")  # options of an episode that are settings of a run
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from simulator.episode.episode import EpisodeLine
-from simulator.episode.record import rule_sums
+from utak.simulator.episode.episode import EpisodeLine
+from utak.simulator.episode.record import rule_sums
 
 SHOWN_SUM_DIGITS = 8  # hexadecimal digits by which a message names a file of rules; a convention
 

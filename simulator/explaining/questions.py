@@ -8,28 +8,27 @@ from dataclasses import replace
 from pathlib import Path
 
 from shapely.errors import ShapelyError
-
-from kb.evidence.absences import AbsenceExplainer
-from kb.evidence.beliefs import FactExplainer, plain_fact
-from kb.evidence.cells import explain_cell
-from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
-from kb.evidence.proving import (
+from utak.kb.evidence.absences import AbsenceExplainer
+from utak.kb.evidence.beliefs import FactExplainer, plain_fact
+from utak.kb.evidence.cells import explain_cell
+from utak.kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
+from utak.kb.evidence.proving import (
     EncodingProver,
     call_deriving,
     prove_query_atom,
     query_predicates,
     unknown_predicate,
 )
-from kb.evidence.reason import Reason, ReasonKind
-from kb.evidence.record import MissingRecordError, Record
-from kb.explanation.belief import certain_atoms
-from kb.explanation.programs import ExplanationError
-from kb.language.atoms import atom_parts
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.reader import facts_from_text
-from kb.language.vocabulary import BELIEF_PREDICATES
-from simulator.episode.episode import Episode, EpisodeLine
-from simulator.explaining.missing_rules import missing_rules
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.record import MissingRecordError, Record
+from utak.kb.explanation.belief import certain_atoms
+from utak.kb.explanation.programs import ExplanationError
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
+from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.explaining.missing_rules import missing_rules
 
 QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
 

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from kb.evidence.reason import Reason, ReasonKind
-from kb.language.diagnostics import BadInputError
-from simulator.episode.episode import Episode
-from simulator.explaining.questions import questions_of_episode
+from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.language.diagnostics import BadInputError
+from utak.simulator.episode.episode import Episode
+from utak.simulator.explaining.questions import questions_of_episode
 
 TREE_LEVELS = 4  # levels of a tree that a page holds; a convention, for the size of the page
 MAX_EXPLAINED_STEPS = 100  # steps of an episode whose commands are explained in a page: bounds the time to write it

@@ -4,13 +4,13 @@ from fractions import Fraction
 from math import floor
 from pathlib import Path
 
-from geometry.io.movingai import MapError, parse_map
-from geometry.kernels.arrays import Bools
-from kb.language.diagnostics import BadInputError, SourceSpan
-from kb.language.source_text import Source
-from simulator.importing.imported import Imported, ImportOptions
-from simulator.importing.raster import CellWorld, RasterCell, RasterError, roomy_place, scaled_walls, world_text
-from simulator.importing.text_file import read_raw, text_source
+from utak.geometry.io.movingai import MapError, parse_map
+from utak.geometry.kernels.arrays import Bools
+from utak.kb.language.diagnostics import BadInputError, SourceSpan
+from utak.kb.language.source_text import Source
+from utak.simulator.importing.imported import Imported, ImportOptions
+from utak.simulator.importing.raster import CellWorld, RasterCell, RasterError, roomy_place, scaled_walls, world_text
+from utak.simulator.importing.text_file import read_raw, text_source
 
 DEFAULT_GOAL = "at(utak, corner(northeast))."  # the goal of a format that has none
 MAX_MAP_FILE_BYTES = 20_000_000  # bytes; derived: the largest table of cells of one square has 16.8 million

@@ -12,12 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import shapely
-
-from kb.language.diagnostics import BadInputError, SourceSpan
-from kb.language.source_text import MAX_FILE_BYTES, Source
-from kb.language.vocabulary import MAX_TABLE_SIDE
-from simulator.importing.imported import COLOUR_LETTERS, Imported, ImportOptions, decimal
-from simulator.importing.svg_path import (
+from utak.kb.language.diagnostics import BadInputError, SourceSpan
+from utak.kb.language.source_text import MAX_FILE_BYTES, Source
+from utak.kb.language.vocabulary import MAX_TABLE_SIDE
+from utak.simulator.importing.imported import COLOUR_LETTERS, Imported, ImportOptions, decimal
+from utak.simulator.importing.svg_path import (
     MAX_UNITS,
     SVG_NUMBER,
     SvgError,
@@ -28,9 +27,9 @@ from simulator.importing.svg_path import (
     ring_area,
     shape_path,
 )
-from simulator.importing.text_file import read_raw, text_source
-from simulator.importing.xml_tree import XmlElement, attribute_span, parse_xml
-from simulator.scenario.worldfile import MAX_TOUCHING_AREA, MIN_THING_AREA
+from utak.simulator.importing.text_file import read_raw, text_source
+from utak.simulator.importing.xml_tree import XmlElement, attribute_span, parse_xml
+from utak.simulator.scenario.worldfile import MAX_TOUCHING_AREA, MIN_THING_AREA
 
 SHAPE_TAGS = ("path", "rect", "circle", "ellipse", "polygon", "polyline")
 SKIPPED_TAGS = ("defs", "metadata", "namo_config", "clipPath", "mask", "symbol", "pattern", "marker")  # not drawn

@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from kb.language.diagnostics import BadInputError, SourceSpan
-from kb.language.source_text import Source
+from utak.kb.language.diagnostics import BadInputError, SourceSpan
+from utak.kb.language.source_text import Source
 
 MAX_IMAGE_PIXELS = 1 << 25  # pixels of an image that is read: 8192 x 4096; a convention
 MAX_TEXT_BYTES_A_PIXEL, MAX_COMMENT_BYTES = 16, 100_000  # bytes of P2, blanks and comments included; a convention

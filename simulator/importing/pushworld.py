@@ -15,11 +15,10 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
-
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
-from kb.language.source_text import MAX_FILE_BYTES, Source
-from simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
-from simulator.importing.raster import (
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
+from utak.kb.language.source_text import MAX_FILE_BYTES, Source
+from utak.simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
+from utak.simulator.importing.raster import (
     CellWorld,
     RasterCell,
     RasterError,
@@ -27,7 +26,7 @@ from simulator.importing.raster import (
     encloses_something,
     world_text,
 )
-from simulator.importing.text_file import read_raw, text_source
+from utak.simulator.importing.text_file import read_raw, text_source
 
 SQUARES_A_CELL = 3  # squares a cell: the robot sees an object of one cell as a square of 3 x 3; a convention
 BORDER_SQUARES = 1  # the walls that a puzzle has around it without naming them

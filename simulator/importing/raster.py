@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Bools
-from geometry.raster.components import components
-from geometry.raster.runs import mask_to_polygon
-from kb.language.vocabulary import MAX_TABLE_SIDE
-from simulator.importing.imported import COLOUR_LETTERS, MAX_CELL_SCALE, region_text
-from simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
-from simulator.world.world import VERGE_COLOUR
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import components
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.vocabulary import MAX_TABLE_SIDE
+from utak.simulator.importing.imported import COLOUR_LETTERS, MAX_CELL_SCALE, region_text
+from utak.simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
+from utak.simulator.world.world import VERGE_COLOUR
 
 RasterCell = tuple[int, int]  # (column, row), row 0 in the south
 MAX_OUTLINE_CORNERS = 60_000  # corners of a verge that is stated as an outline: seconds of work; a convention

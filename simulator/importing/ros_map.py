@@ -6,15 +6,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from kb.language.diagnostics import CannotOpenError, SourceSpan
-from kb.language.source_text import MAX_FILE_BYTES, Source, lies_outside
-from simulator.importing.imported import Imported, ImportOptions
-from simulator.importing.movingai_map import scenario_of_walls
-from simulator.importing.pgm import GreyImage, parse_pgm
-from simulator.importing.ros_yaml import MapHead, parse_head
-from simulator.importing.text_file import read_raw, text_source
+from utak.geometry.kernels.arrays import Bools
+from utak.kb.language.diagnostics import CannotOpenError, SourceSpan
+from utak.kb.language.source_text import MAX_FILE_BYTES, Source, lies_outside
+from utak.simulator.importing.imported import Imported, ImportOptions
+from utak.simulator.importing.movingai_map import scenario_of_walls
+from utak.simulator.importing.pgm import GreyImage, parse_pgm
+from utak.simulator.importing.ros_yaml import MapHead, parse_head
+from utak.simulator.importing.text_file import read_raw, text_source
 
 MAX_PGM_BYTES = 100_000_000  # bytes of an image; a convention
 DEFAULT_SQUARE_METRES = (

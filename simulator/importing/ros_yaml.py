@@ -10,8 +10,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from kb.language.diagnostics import BadInputError, SourceSpan, did_you_mean
-from kb.language.source_text import Source
+from utak.kb.language.diagnostics import BadInputError, SourceSpan, did_you_mean
+from utak.kb.language.source_text import Source
 
 KEY_LINE = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)[ \t]*:(?:[ \t]+(.*))?$")
 ITEM_LINE = re.compile(r"[ \t]*-[ \t]+(\S+)[ \t]*$")

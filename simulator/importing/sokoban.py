@@ -16,14 +16,13 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools
-from kb.language.diagnostics import BadInputError, SourceSpan
-from kb.language.source_text import MAX_FILE_BYTES, Source
-from kb.language.vocabulary import MAX_TABLE_SIDE
-from simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
-from simulator.importing.raster import CellWorld, RasterCell, RasterError, world_text
-from simulator.importing.text_file import read_raw, text_source
+from utak.geometry.kernels.arrays import Bools
+from utak.kb.language.diagnostics import BadInputError, SourceSpan
+from utak.kb.language.source_text import MAX_FILE_BYTES, Source
+from utak.kb.language.vocabulary import MAX_TABLE_SIDE
+from utak.simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
+from utak.simulator.importing.raster import CellWorld, RasterCell, RasterError, world_text
+from utak.simulator.importing.text_file import read_raw, text_source
 
 SQUARES_A_BOX = 3  # squares a cell: the robot sees a box as a square of 3 x 3; a convention
 SQUARE_MARKS = "#@+$*. -_"  # the characters of a row

@@ -3,8 +3,8 @@
 from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from pathlib import Path
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from kb.language.source_text import Source, lies_outside, read_bytes
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.language.source_text import Source, lies_outside, read_bytes
 
 
 def read_raw(path: Path | str, max_bytes: int, what: str, untrusted: bool = False) -> bytes:

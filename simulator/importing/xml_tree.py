@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from kb.language.diagnostics import BadInputError, SourceSpan
-from kb.language.source_text import Source
+from utak.kb.language.diagnostics import BadInputError, SourceSpan
+from utak.kb.language.source_text import Source
 
 MAX_XML_DEPTH = 64  # elements within each other; a convention
 MAX_XML_ELEMENTS = 100_000  # elements of a document; a convention

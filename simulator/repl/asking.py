@@ -4,10 +4,10 @@ import re
 from collections.abc import Sequence
 from itertools import groupby
 
-from kb.reasoning.assumptions import canonical_facts
-from kb.reasoning.query import MAX_ANSWER_ROWS, QueryAnswer
-from simulator.repl.dialogue import Dialogue
-from simulator.repl.printer import units_of
+from utak.kb.reasoning.assumptions import canonical_facts
+from utak.kb.reasoning.query import MAX_ANSWER_ROWS, QueryAnswer
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.repl.printer import units_of
 
 ROBOT_NAMES = frozenset({"utak", "org"})  # the robot in questions and in facts
 MAX_ROWS_ASKED = 1_000_000  # rows of an answer that `;` can reach; a convention

@@ -3,14 +3,14 @@
 import shlex
 from pathlib import Path
 
-from kb.world.stated_plan import stated_plan
-from simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
-from simulator.repl.dialogue import Dialogue
-from simulator.repl.travelling import differences
-from simulator.run.changes import RunConditions
-from simulator.run.live_story import LiveStory
-from simulator.terminal.action_in_words import describe
-from simulator.terminal.streams import escape_controls
+from utak.kb.world.stated_plan import stated_plan
+from utak.simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.repl.travelling import differences
+from utak.simulator.run.changes import RunConditions
+from utak.simulator.run.live_story import LiveStory
+from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.terminal.streams import escape_controls
 
 MAX_DIFFERENCES_SHOWN = 20  # facts that a change changes, which are printed; a convention
 

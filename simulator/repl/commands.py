@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from kb.language.diagnostics import did_you_mean
-from simulator.repl import asking, changing, travelling
-from simulator.repl.dialogue import QUIT_WORDS, Dialogue, PromptCommand
-from simulator.repl.picture import STYLES, draw_belief
+from utak.kb.language.diagnostics import did_you_mean
+from utak.simulator.repl import asking, changing, travelling
+from utak.simulator.repl.dialogue import QUIT_WORDS, Dialogue, PromptCommand
+from utak.simulator.repl.picture import STYLES, draw_belief
 
 # Printed above every picture of the truth.
 TRUE_TABLE_NOTICE = "the true table, which the robot may believe to be otherwise:"

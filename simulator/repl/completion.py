@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from kb.language.arguments import ArgumentType
-from kb.language.atoms import atom_parts
-from kb.language.vocabulary import (
+from utak.kb.language.arguments import ArgumentType
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.vocabulary import (
     BELIEF_PREDICATES,
     CIRCUMSTANCES,
     CONSTRAINT_GOALS,
@@ -19,8 +19,8 @@ from kb.language.vocabulary import (
     STATED_STEPS,
     Signature,
 )
-from kb.reasoning.interfaces import USER_RULE_INTERFACES
-from simulator.repl.statements import FACT_COMMANDS, QUERY_SIGN, is_query
+from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
+from utak.simulator.repl.statements import FACT_COMMANDS, QUERY_SIGN, is_query
 
 WORD = re.compile(r"[A-Za-z0-9_?-]*\Z")  # the word at the cursor
 # The words of an argument type that has no others, by its name.

@@ -4,16 +4,16 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
-from kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
-from simulator.repl.explaining import EXPLAINERS, Explainer, asked
-from simulator.repl.printer import Printer
-from simulator.repl.statements import MORE_SIGN, QUERY_SIGN, is_query
-from simulator.run.changes import Change, changed_conditions
-from simulator.run.live_story import LiveStory
-from simulator.run.recorded_story import RecordedStory
-from simulator.run.session import CannotAdoptError
-from simulator.terminal.streams import StreamError
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
+from utak.kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
+from utak.simulator.repl.explaining import EXPLAINERS, Explainer, asked
+from utak.simulator.repl.printer import Printer
+from utak.simulator.repl.statements import MORE_SIGN, QUERY_SIGN, is_query
+from utak.simulator.run.changes import Change, changed_conditions
+from utak.simulator.run.live_story import LiveStory
+from utak.simulator.run.recorded_story import RecordedStory
+from utak.simulator.run.session import CannotAdoptError
+from utak.simulator.terminal.streams import StreamError
 
 QUIT_WORDS = ("quit", "exit")
 MAX_BUG_CHARACTERS = 500  # characters of the text of a bug that are printed; a convention
@@ -107,7 +107,7 @@ class Dialogue:
     def _tell_lacking(self) -> None:
         """Print, before the first explanation, that rules of the run are not given, if so."""
         if not self._told_lacking:
-            from simulator.explaining.missing_rules import missing_rules
+            from utak.simulator.explaining.missing_rules import missing_rules
 
             self._told_lacking = True
             if lacking := missing_rules(self.story.header, self.story.rule_files):

@@ -9,13 +9,13 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb.evidence.reason import Depth
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from simulator.run.story import Story
-from simulator.terminal.streams import escape_controls
+from utak.kb.evidence.reason import Depth
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.simulator.run.story import Story
+from utak.simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
-    from simulator.explaining.questions import Questions
+    from utak.simulator.explaining.questions import Questions
 
 CELL_QUESTION = re.compile(r"cell\s+(\d{1,9})")
 
@@ -52,7 +52,7 @@ def why_not(story: Story, rest: str, depth: str) -> str:
 
 def _questions(story: Story) -> "Questions":
     """Return the questions about a story up to its current step."""
-    from simulator.explaining.questions import Questions
+    from utak.simulator.explaining.questions import Questions
 
     lines = story.lines[: story.at + 1]
     return Questions(story.header, lines, story.result, story.rule_files)

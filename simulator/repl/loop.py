@@ -2,16 +2,16 @@
 
 from collections.abc import Mapping
 
-from kb.reasoning.query import QueryEngine
-from simulator.repl.commands import PROMPT_COMMANDS
-from simulator.repl.completion import CompletionWord, completions
-from simulator.repl.dialogue import Dialogue
-from simulator.repl.explaining import EXPLAINERS, Explainer
-from simulator.repl.printer import Printer, open_printer
-from simulator.repl.reading import History, LineReader, open_reader
-from simulator.repl.statements import StatementBuffer
-from simulator.run.live_story import LiveStory
-from simulator.run.recorded_story import RecordedStory
+from utak.kb.reasoning.query import QueryEngine
+from utak.simulator.repl.commands import PROMPT_COMMANDS
+from utak.simulator.repl.completion import CompletionWord, completions
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.repl.explaining import EXPLAINERS, Explainer
+from utak.simulator.repl.printer import Printer, open_printer
+from utak.simulator.repl.reading import History, LineReader, open_reader
+from utak.simulator.repl.statements import StatementBuffer
+from utak.simulator.run.live_story import LiveStory
+from utak.simulator.run.recorded_story import RecordedStory
 
 
 def converse(

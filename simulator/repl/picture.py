@@ -6,10 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.kernels.arrays import Bools, Floats
-from kb.world.model import FACT_UNITS_PER_SQUARE
-from simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE
+from utak.simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled
 
 VERGE_MARK, DOOR_MARK, UNSEEN_MARK = "#", "=", " "
 OBJECT_MARKS = "ABCDEFGHIJKLMNOPQRSTVWXYZ"  # without U, which is Utak; further objects have the last mark

@@ -10,7 +10,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from simulator.terminal.streams import StreamError, escape_controls
+from utak.simulator.terminal.streams import StreamError, escape_controls
 
 MIN_PAGE_ROWS = 5  # rows shown at once on the lowest terminal; a convention
 LINES_BESIDE_A_PAGE = 6  # lines of a terminal for the prompt, the frame of a table and what is said below it

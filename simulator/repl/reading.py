@@ -7,8 +7,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
-from simulator.repl.completion import CompletionWord
-from simulator.terminal.streams import StreamError
+from utak.simulator.repl.completion import CompletionWord
+from utak.simulator.terminal.streams import StreamError
 
 MAX_HISTORY_LINES = 1000  # statements that are remembered; a convention
 PLAIN_PROMPT_VARIABLE = "UTAK_PLAIN_PROMPT"  # set, it lets the prompt take readline where prompt_toolkit is installed

@@ -4,13 +4,13 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 
-from simulator.episode.episode import EpisodeLine
-from simulator.repl.asking import names_word
-from simulator.repl.dialogue import Dialogue
-from simulator.run.interrupts import defer_interrupt
-from simulator.terminal.action_in_words import describe
-from simulator.terminal.progress import StepProgress
-from simulator.terminal.streams import escape_controls
+from utak.simulator.episode.episode import EpisodeLine
+from utak.simulator.repl.asking import names_word
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.run.interrupts import defer_interrupt
+from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.terminal.progress import StepProgress
+from utak.simulator.terminal.streams import escape_controls
 
 MAX_GOTO_STEP = 1_000_000  # the greatest number of steps that a command takes; a convention
 OUTLINE_START = "segment("  # facts about outlines: many of them change at every step

@@ -10,13 +10,12 @@ from html import escape
 from typing import Any, NamedTuple
 
 import shapely
-
-from geometry.motion.se2 import direction
-from kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
-from kb.world.model import FACT_UNITS_PER_SQUARE
-from simulator.episode.episode import Episode
-from simulator.episode.record import recorded_world
-from simulator.world.world import VERGE_COLOUR, World
+from utak.geometry.motion.se2 import direction
+from utak.kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE
+from utak.simulator.episode.episode import Episode
+from utak.simulator.episode.record import recorded_world
+from utak.simulator.world.world import VERGE_COLOUR, World
 
 PIXELS_PER_SQUARE = 10  # of a picture of a small table; a convention
 MAX_PICTURE_PIXELS = 640  # of the longer side of a picture; a convention

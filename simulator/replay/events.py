@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.episode.episode import Episode, EpisodeLine
 
 # The kinds of events, in the order in which a viewer lists them, and what each means.
 EVENT_KINDS = {

@@ -11,11 +11,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from PIL import Image, ImageDraw, ImageFont
-
-from kb.language.vocabulary import MAX_TABLE_SIDE
-from simulator.episode.episode import Episode, EpisodeLine
-from simulator.terminal.action_in_words import describe
-from simulator.terminal.streams import escape_controls
+from utak.kb.language.vocabulary import MAX_TABLE_SIDE
+from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.terminal.streams import escape_controls
 
 # An edge of an outline; numbers of at most nine digits.
 SEGMENT = re.compile(r"segment\(([a-z]\w*),(\d{1,9})((?:,-?\d{1,9}){4}),(\d{1,9})\)\.", re.ASCII)

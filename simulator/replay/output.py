@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from simulator.episode.episode import Episode, read_begun_episode
-from simulator.episode.output_files import check_path, is_gif, write_whole
-from simulator.replay.page import is_page, replay_page
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.simulator.episode.episode import Episode, read_begun_episode
+from utak.simulator.episode.output_files import check_path, is_gif, write_whole
+from utak.simulator.replay.page import is_page, replay_page
 
 PAGE_KIND, GIF_KIND = "page of HTML", "GIF picture"  # as messages name them
 MAX_NESTING = 100  # levels of lists and objects within each other; ours have about ten
@@ -39,8 +39,10 @@ def write_page(
     path: Path | str, episode: Episode, force: bool = False, rule_files: Sequence[str] = (), name: str = ""
 ) -> str:
     """Write the page of an episode, with trees of reasons."""
-    from simulator.explaining.missing_rules import missing_rules
-    from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
+    from utak.simulator.explaining.missing_rules import missing_rules
+    from utak.simulator.explaining.trees import (
+        trees_of_episode,  # takes clingo, which the other kinds of replay do not need
+    )
 
     lacking = missing_rules(episode.header, rule_files)
     page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name)
@@ -56,7 +58,7 @@ def check_page_path(path: Path | str, force: bool = False) -> None:
 def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:
     """Write an episode as a moving picture."""
     try:
-        from simulator.replay.gif import animation
+        from utak.simulator.replay.gif import animation
     except ImportError:
         what = "moving pictures need pillow, which is not installed: pip install pillow"
         raise CannotOpenError(str(path), what) from None

@@ -21,10 +21,10 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
-from simulator.episode.episode import Episode, EpisodeLine
-from simulator.episode.output_files import after_prologue
-from simulator.replay.events import episode_events
-from simulator.terminal.streams import escape_controls
+from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.episode.output_files import after_prologue
+from utak.simulator.replay.events import episode_events
+from utak.simulator.terminal.streams import escape_controls
 
 LOADER = ("loader.js",)  # the script that stands in a page as it is
 # The scripts that stand in it deflated, in the order in which they need one another.

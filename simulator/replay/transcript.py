@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
-from kb.language.diagnostics import BadInputError
-from kb.world.stated_plan import stated_plan
-from simulator.episode.episode import Episode
-from simulator.replay.changes import changes
-from simulator.run.recorded_story import RecordedStory
-from simulator.terminal.action_in_words import describe
-from simulator.terminal.streams import escape_controls
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.world.stated_plan import stated_plan
+from utak.simulator.episode.episode import Episode
+from utak.simulator.replay.changes import changes
+from utak.simulator.run.recorded_story import RecordedStory
+from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.terminal.streams import escape_controls
 
 MAX_LISTED_FACTS = 40  # facts of one kind of change that a step lists; a convention
 

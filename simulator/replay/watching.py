@@ -4,12 +4,12 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from simulator.scenario.picture import draw
-from simulator.terminal.action_in_words import describe
-from simulator.terminal.streams import escape_controls
+from utak.simulator.scenario.picture import draw
+from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
-    from simulator.run.session import Session
+    from utak.simulator.run.session import Session
 
 TRUE_TABLE = "the true table, which the robot may believe to be otherwise:"
 

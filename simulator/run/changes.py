@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.source_text import source_from_bytes
-from kb.reasoning.assumptions import ASSUMPTION_FILE, Assumption, canonical_facts, read_assumptions
-from kb.task.task import Task, task_with_goals
-from simulator.episode.episode import EpisodeLine
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.source_text import source_from_bytes
+from utak.kb.reasoning.assumptions import ASSUMPTION_FILE, Assumption, canonical_facts, read_assumptions
+from utak.kb.task.task import Task, task_with_goals
+from utak.simulator.episode.episode import EpisodeLine
 
 CHANGE_KINDS = ("assume", "retract", "goal")  # as commands of `utak repl` and episodes name them
 

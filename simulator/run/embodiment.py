@@ -1,11 +1,11 @@
 """The only bridge between robot and world: commands go in, impressions come out, nothing else passes."""
 
-from kb.body import Command, Grasp, Impression, Move, Push, Release, Turn
-from simulator.world.physics import Tabletop
+from utak.kb.body import Command, Grasp, Impression, Move, Push, Release, Turn
+from utak.simulator.world.physics import Tabletop
 
 
 class Embodiment:
-    """Utak's body on a table; satisfies the protocol `kb.body.Body`."""
+    """Utak's body on a table; satisfies the protocol `utak.kb.body.Body`."""
 
     def __init__(self, table: Tabletop) -> None:
         self.__table = table

@@ -11,13 +11,13 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, encode
-from simulator.episode.record import header, recorded_task, rules_sum
-from simulator.run.robots import warm_for
-from simulator.run.session import RobotMaker, Session
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, encode
+from utak.simulator.episode.record import header, recorded_task, rules_sum
+from utak.simulator.run.robots import warm_for
+from utak.simulator.run.session import RobotMaker, Session
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
 
 
 class RunStage(NamedTuple):

@@ -6,16 +6,15 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import shapely
-
-from kb.language.diagnostics import BadInputError
-from simulator.episode.episode import EpisodeLine, EpisodeLog
-from simulator.episode.record import action_entry, facts_of_line, header
-from simulator.run.changes import AssumedRules, Change, RunConditions, changed_conditions
-from simulator.run.robots import make_robot, warm_for
-from simulator.run.session import RobotMaker, Session
-from simulator.scenario.picture import draw
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
+from utak.kb.language.diagnostics import BadInputError
+from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
+from utak.simulator.episode.record import action_entry, facts_of_line, header
+from utak.simulator.run.changes import AssumedRules, Change, RunConditions, changed_conditions
+from utak.simulator.run.robots import make_robot, warm_for
+from utak.simulator.run.session import RobotMaker, Session
+from utak.simulator.scenario.picture import draw
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
 
 MAX_KEPT_SESSIONS = 12  # copies of the run that are kept for going on from earlier steps; a convention
 

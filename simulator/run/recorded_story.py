@@ -5,18 +5,17 @@ from contextlib import suppress
 from typing import Any
 
 import shapely
-
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.reader import parse_facts
-from kb.language.source_text import source_from_bytes
-from simulator.episode.episode import Episode, EpisodeLine
-from simulator.episode.record import facts_of_line, recorded_scenario, recorded_settings, recorded_world
-from simulator.run.changes import CHANGE_KINDS, AssumedRules, Change, RunConditions, changed_conditions
-from simulator.run.live_story import LiveStory
-from simulator.run.robots import make_robot
-from simulator.run.session import RobotMaker
-from simulator.scenario.picture import draw
-from simulator.scenario.scenario import Scenario
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import source_from_bytes
+from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.episode.record import facts_of_line, recorded_scenario, recorded_settings, recorded_world
+from utak.simulator.run.changes import CHANGE_KINDS, AssumedRules, Change, RunConditions, changed_conditions
+from utak.simulator.run.live_story import LiveStory
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import RobotMaker
+from utak.simulator.scenario.picture import draw
+from utak.simulator.scenario.scenario import Scenario
 
 # What a header that is not as it must be leads to.
 DAMAGE_ERRORS = (ValueError, KeyError, TypeError, AttributeError, shapely.errors.ShapelyError)

@@ -2,20 +2,20 @@
 
 from typing import TYPE_CHECKING
 
-from kb.body import Body
-from kb.task.task import Task
-from planner.stages import stages
-from simulator.run.session import RobotMaker, RobotProtocol
-from simulator.run.warming import warm
-from simulator.scenario.settings import Settings
+from utak.kb.body import Body
+from utak.kb.task.task import Task
+from utak.planner.stages import stages
+from utak.simulator.run.session import RobotMaker, RobotProtocol
+from utak.simulator.run.warming import warm
+from utak.simulator.scenario.settings import Settings
 
 if TYPE_CHECKING:
-    from planner.cycle import Options
+    from utak.planner.cycle import Options
 
 
 def make_robot(body: Body, task: Task, settings: Settings) -> RobotProtocol:
-    """Return the robot of `planner.cycle` for a body and a task; compile the geometry kernels that it needs first."""
-    from planner.cycle import Robot as Mind
+    """Return our robot for a body and a task; compile the geometry kernels that it needs first."""
+    from utak.planner.cycle import Robot as Mind
 
     warm_for(make_robot, task, settings)
     return Mind(body, task, _options(settings))
@@ -29,6 +29,6 @@ def warm_for(make: RobotMaker, task: Task, settings: Settings) -> None:
 
 def _options(settings: Settings) -> "Options":
     """Return the robot's options for the options of a run."""
-    from planner.cycle import Options
+    from utak.planner.cycle import Options
 
     return Options(paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps, pull=settings.pull)

@@ -6,18 +6,18 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
-from kb.body import Body, Command, Impression
-from kb.task.task import Task
-from simulator.episode.episode import EpisodeLine, EpisodeLog
-from simulator.episode.record import action_entry, header, motion_entry
-from simulator.run.embodiment import Embodiment
-from simulator.run.time_limit import TimeLimit, TimeOver
-from simulator.scenario.expectation import Snapshot, shortfalls, should_fail
-from simulator.scenario.points import ExpectationOutcome, judge_expectations
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
-from simulator.world.physics import Tabletop
-from simulator.world.world import outer_ring
+from utak.kb.body import Body, Command, Impression
+from utak.kb.task.task import Task
+from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
+from utak.simulator.episode.record import action_entry, header, motion_entry
+from utak.simulator.run.embodiment import Embodiment
+from utak.simulator.run.time_limit import TimeLimit, TimeOver
+from utak.simulator.scenario.expectation import Snapshot, shortfalls, should_fail
+from utak.simulator.scenario.points import ExpectationOutcome, judge_expectations
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import outer_ring
 
 
 class StepReportProtocol(Protocol):

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from simulator.episode.episode import EpisodeLine, read_begun_episode
-from simulator.run.changes import Change, RunConditions
-from simulator.run.live_story import LiveStory
-from simulator.run.recorded_story import RecordedStory
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
+from utak.simulator.episode.episode import EpisodeLine, read_begun_episode
+from utak.simulator.run.changes import Change, RunConditions
+from utak.simulator.run.live_story import LiveStory
+from utak.simulator.run.recorded_story import RecordedStory
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 
 class Story(Protocol):

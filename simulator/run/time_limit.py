@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from kb.language.operating_system import alarms
+from utak.kb.language.operating_system import alarms
 
 ALARM_INTERVAL = (
     0.1  # seconds between two alarms: the one that falls where errors are ignored is repeated; a convention

@@ -5,18 +5,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.terms import Fact
-from simulator.episode.episode import EpisodeLine, EpisodeLog
-from simulator.episode.record import facts_of_line
-from simulator.run.robots import make_robot
-from simulator.run.session import Result, RobotMaker, Session
-from simulator.scenario.expectation import expects_verdict, read_expectations, weights_of
-from simulator.scenario.points import ExpectationOutcome, PointScore, score
-from simulator.scenario.scenario import Scenario, read_scenario
-from simulator.scenario.settings import Settings, kb_files_named
-from simulator.scenario.trialfile import TRIAL_FILE, TrialPlan, answers_as_wanted, query_of, read_trial_plan
-from simulator.scenario.untrusted import refuse_outside_links
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.terms import Fact
+from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
+from utak.simulator.episode.record import facts_of_line
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, RobotMaker, Session
+from utak.simulator.scenario.expectation import expects_verdict, read_expectations, weights_of
+from utak.simulator.scenario.points import ExpectationOutcome, PointScore, score
+from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.scenario.settings import Settings, kb_files_named
+from utak.simulator.scenario.trialfile import TRIAL_FILE, TrialPlan, answers_as_wanted, query_of, read_trial_plan
+from utak.simulator.scenario.untrusted import refuse_outside_links
 
 LAST_STEPS = 5  # the number of steps before the end that a trial keeps, for reports; a convention
 NO_PLAN = TrialPlan({}, (), {})  # what holds without trial.lp
@@ -122,7 +122,7 @@ def _answers(plan: TrialPlan, facts: Sequence[str], rules: Sequence[str]) -> Ite
     """Yield the outcome of each question of trial.lp, asked of the world model at the end."""
     if not plan.asks:
         return
-    from kb.reasoning.query import QueryEngine  # only where something is asked: it takes time
+    from utak.kb.reasoning.query import QueryEngine  # only where something is asked: it takes time
 
     with QueryEngine(rules=rules) as engine:
         for asked, points in plan.asks.items():
@@ -131,7 +131,7 @@ def _answers(plan: TrialPlan, facts: Sequence[str], rules: Sequence[str]) -> Ite
 
 def _answer(engine: Any, asked: Fact, facts: Sequence[str]) -> str:
     """Return '' when a question has the wanted answer, else its answer in words."""
-    from kb.reasoning.query import QueryLimitError
+    from utak.kb.reasoning.query import QueryLimitError
 
     try:
         found = engine.ask(facts, query_of(asked))

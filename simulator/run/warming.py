@@ -14,14 +14,15 @@ from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-import geometry
-from geometry.kernels.jit import announce_compiling
-from kb.language.operating_system import end_with_parent, read_lines_from_parent
-from utak_command import isolated_command
+from utak.geometry import Screen
+from utak.geometry.kernels.jit import announce_compiling
+from utak.kb.language.operating_system import end_with_parent, read_lines_from_parent
+
+from utak.launcher import folder_of, isolated_command
 
 Use = Callable[[], None]
 # The folders of our packages.
-PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
+PACKAGES = [Path(folder_of(name)) for name in ("geometry", "kb", "planner", "simulator")]
 
 
 class KernelCompiler:
@@ -52,7 +53,7 @@ class KernelCompiler:
 
     def second_process_command(self, uses: Sequence[Use]) -> list[str]:
         """Return the command line of the process that compiles for some uses."""
-        return isolated_command("simulator.run.warming", *(use.__name__ for use in uses))
+        return isolated_command("utak.simulator.run.warming", *(use.__name__ for use in uses))
 
     def compile_in_two_processes(self, mine: Sequence[Use], others: Sequence[Use]) -> None:
         """Compile for some uses here, and for others in a second process, which ends when this one ends."""
@@ -100,7 +101,7 @@ def warm_all() -> None:
 
 def count_cached_kernels() -> int:
     """Return the number of our kernels in the cache."""
-    names = {path.stem for path in Path(geometry.__file__).parent.rglob("*.py")}
+    names = {path.stem for path in PACKAGES[0].rglob("*.py")}
     found = {path.name.split("-")[0] for place in _caches() if place.is_dir() for path in place.rglob("*.nbi")}
     return sum(name.split(".")[0] in names for name in found)
 
@@ -110,7 +111,7 @@ def _caches() -> list[Path]:
     given = os.environ.get("NUMBA_CACHE_DIR")
     if given:
         return [Path(given)]
-    found = [Path(geometry.__file__).parent]
+    found = [PACKAGES[0]]
     users = [os.environ.get(name) for name in ("XDG_CACHE_HOME", "LOCALAPPDATA")]
     with suppress(RuntimeError):  # a user without a home
         users += [str(Path.home() / ".cache"), str(Path.home() / "Library" / "Caches")]
@@ -120,9 +121,8 @@ def _caches() -> list[Path]:
 def search() -> None:
     """Call the kernels that find routes; about half of all kernels."""
     import numpy as np
-
-    from geometry.raster.geodesic import reach
-    from geometry.routes.queries import compile_route_kernels
+    from utak.geometry.raster.geodesic import reach
+    from utak.geometry.routes.queries import compile_route_kernels
 
     compile_route_kernels()
     reach(np.ones((2, 2), np.bool_), 0, 0)
@@ -131,10 +131,9 @@ def search() -> None:
 def see() -> None:
     """Call the kernels that find regions and their shapes, and sample completions."""
     import numpy as np
-
-    from geometry.counts.gibbs import DRAWN, Counts, pictures
-    from geometry.counts.moments import blobs
-    from geometry.raster.components import bounding_boxes, components
+    from utak.geometry.counts.gibbs import DRAWN, Counts, pictures
+    from utak.geometry.counts.moments import blobs
+    from utak.geometry.raster.components import bounding_boxes, components
 
     bounding_boxes(components(np.ones((2, 2), np.bool_)).labels, 1)
     drawn, full = np.full((1, 1), DRAWN, np.int8), np.ones((1, 1), np.int8)
@@ -147,10 +146,9 @@ def see() -> None:
 def tell_counts() -> None:
     """Call the kernels that derive squares from counts."""
     import numpy as np
-
-    from geometry.counts.contradictions import total_contradictions
-    from geometry.counts.settle import misfits, remaining_counts, settle
-    from geometry.counts.uncover import remove_covered_squares
+    from utak.geometry.counts.contradictions import total_contradictions
+    from utak.geometry.counts.settle import misfits, remaining_counts, settle
+    from utak.geometry.counts.uncover import remove_covered_squares
 
     where, one = np.zeros((1, 2), np.int32), np.ones(1, np.int16)
     fields = where, np.array([[1, 0]], np.int16), one, one
@@ -166,8 +164,7 @@ def tell_counts() -> None:
 def sightlines() -> None:
     """Call the kernels that follow lines of sight, as `--paths visibility` does."""
     import numpy as np
-
-    from geometry.pathfinders.visibility_graph import visibility_path
+    from utak.geometry.pathfinders.visibility_graph import visibility_path
 
     free = np.ones((5, 5), np.bool_)
     free[2, 2] = False
@@ -180,7 +177,7 @@ def many_routes() -> None:
 
     free = np.ones((9, 12), np.bool_)
     free[4, 3:6] = free[4, 7:9] = free[0:2, 5] = False
-    screen = geometry.Screen(free)
+    screen = Screen(free)
     screen.routes((0.5, 4.5), (11.5, 4.5), k=4)
     screen.shortest((0.5, 4.5), (11.5, 4.5))
 
@@ -192,15 +189,14 @@ def rings() -> None:
     free = np.zeros((9, 9), np.bool_)
     free[1:8, 1:8] = True
     free[2:7, 2:7] = False
-    assert geometry.Screen(free).pathgraph_arrays
+    assert Screen(free).pathgraph_arrays
 
 
 def move() -> None:
     """Call the kernels that plan a motion of a shape past another at any angle."""
     import shapely
-
-    from geometry.cspace.plan_motion import plan_motion
-    from geometry.motion.se2 import Pose
+    from utak.geometry.cspace.plan_motion import plan_motion
+    from utak.geometry.motion.se2 import Pose
 
     plan_motion(shapely.box(0, 0, 3, 1), [shapely.box(4, -3, 5, 1.5)], Pose(0.0, 0.0, 0.0), Pose(6.0, 0.0, 90.0))
 
@@ -208,8 +204,7 @@ def move() -> None:
 def tell_shapes() -> None:
     """Call the kernels that fit shape classes to a thing."""
     import numpy as np
-
-    from geometry.shapes.fit import fit_shapes
+    from utak.geometry.shapes.fit import fit_shapes
 
     fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
 
@@ -220,7 +215,7 @@ def survey() -> None:
 
     free = np.ones((12, 20), np.bool_)
     free[:4, 9:11] = free[7:, 9:11] = False
-    screen = geometry.Screen(free)
+    screen = Screen(free)
     screen.parts(screen.passages())
 
 
@@ -228,13 +223,12 @@ def walk() -> None:
     """Call the kernels that move to the first contact, straight, and around a place."""
     import numpy as np
     import shapely
-
-    from geometry.motion.first_contact import ContactBody, Obstacles
-    from geometry.motion.se2 import Translate
-    from geometry.raster.line_of_sight import straight
-    from geometry.raster.rasterize import squares, window_of
-    from geometry.raster.surroundings import survey_square
-    from geometry.raster.winding import shortest_path_with_crossing_number
+    from utak.geometry.motion.first_contact import ContactBody, Obstacles
+    from utak.geometry.motion.se2 import Translate
+    from utak.geometry.raster.line_of_sight import straight
+    from utak.geometry.raster.rasterize import squares, window_of
+    from utak.geometry.raster.surroundings import survey_square
+    from utak.geometry.raster.winding import shortest_path_with_crossing_number
 
     free = np.ones((3, 3), np.bool_)
     free[1, 1] = False
@@ -251,10 +245,9 @@ def carry() -> None:
     """Call the kernels that plan to carry an object and to turn it."""
     import numpy as np
     import shapely
-
-    from geometry.manipulation.plan_carrying import Inside, plan_carrying
-    from geometry.motion.first_contact import ContactBody, Obstacles
-    from geometry.motion.se2 import Rotate
+    from utak.geometry.manipulation.plan_carrying import Inside, plan_carrying
+    from utak.geometry.motion.first_contact import ContactBody, Obstacles
+    from utak.geometry.motion.se2 import Rotate
 
     body = ContactBody(shapely.box(1, 1, 3, 3), [(4.0, 1.0)])
     wall = Obstacles([shapely.box(10, 0, 11, 5)])

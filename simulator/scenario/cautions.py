@@ -5,17 +5,16 @@ from pathlib import Path
 from typing import Any
 
 import shapely
-
-from kb.language.arguments import decimal_value
-from kb.language.diagnostics import BadInputError, Problem
-from kb.language.source_text import read_source
-from kb.language.terms import Fact, Text
-from kb.language.vocabulary import ROBOT
-from kb.language.wkt import parse_wkt
-from simulator.scenario.expectation import EXPECTATION_TOLERANCE
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.trialfile import TRIAL_FILE, query_of, read_trial_plan
-from simulator.world.world import World
+from utak.kb.language.arguments import decimal_value
+from utak.kb.language.diagnostics import BadInputError, Problem
+from utak.kb.language.source_text import read_source
+from utak.kb.language.terms import Fact, Text
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.wkt import parse_wkt
+from utak.simulator.scenario.expectation import EXPECTATION_TOLERANCE
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.trialfile import TRIAL_FILE, query_of, read_trial_plan
+from utak.simulator.world.world import World
 
 
 def cautions(folder: Path, scenario: Scenario) -> Iterator[Problem]:
@@ -63,7 +62,7 @@ def _inner_radius(shape: Any) -> float:
 
 def _hopeless_questions(path: Path) -> Iterator[Problem]:
     """Yield the questions of trial.lp that no world model answers, with its rules: the predicate is unknown, say."""
-    from kb.reasoning.query import QueryEngine  # only where something is asked: it takes time
+    from utak.kb.reasoning.query import QueryEngine  # only where something is asked: it takes time
 
     plan, source = read_trial_plan(path), read_source(path)
     if not plan.asks:

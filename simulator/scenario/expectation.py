@@ -8,16 +8,15 @@ from typing import Any, NamedTuple
 
 import shapely
 from shapely.affinity import rotate, translate
-
-from kb.language.arguments import abbreviated, decimal_value
-from kb.language.diagnostics import BadInputError, Problem, did_you_mean
-from kb.language.reader import parse_facts
-from kb.language.source_text import Source, read_source
-from kb.language.terms import Fact, Number, Symbol, Term, Text
-from kb.language.vocabulary import EXPECTATION_VOCABULARY, check_facts
-from kb.language.wkt import parse_wkt
-from simulator.scenario.trialfile import TRIAL_FILE
-from simulator.world.world import World, outer_ring
+from utak.kb.language.arguments import abbreviated, decimal_value
+from utak.kb.language.diagnostics import BadInputError, Problem, did_you_mean
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import Source, read_source
+from utak.kb.language.terms import Fact, Number, Symbol, Term, Text
+from utak.kb.language.vocabulary import EXPECTATION_VOCABULARY, check_facts
+from utak.kb.language.wkt import parse_wkt
+from utak.simulator.scenario.trialfile import TRIAL_FILE
+from utak.simulator.world.world import World, outer_ring
 
 EXPECTATION_TOLERANCE = 1e-3  # squares; `inside` and `near` hold within it; a convention
 MIN_CIRCLING_DEGREES = 330.0  # degrees of winding that count as once around (docs/files.md)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from kb.language.diagnostics import CannotOpenError
+from utak.kb.language.diagnostics import CannotOpenError
 
 WORLD_FILES = ("world.lp", "world.txt")  # of which a scenario has one
 

@@ -13,11 +13,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
-
-from geometry.raster.rasterize import squares
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
-from kb.language.source_text import Source, read_source
-from simulator.world.world import VERGE_COLOUR, Thing, World
+from utak.geometry.raster.rasterize import squares
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
+from utak.kb.language.source_text import Source, read_source
+from utak.simulator.world.world import VERGE_COLOUR, Thing, World
 
 FLOOR_MARK, UTAK_MARK = ".", "U"  # the characters for floor and for Utak in pictures
 MAX_PICTURE_SIDE = 512  # squares along each side of a picture (docs/files.md); world.lp can state greater tables

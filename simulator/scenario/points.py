@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from kb.language.terms import Fact
-from simulator.scenario.expectation import weights_of
+from utak.kb.language.terms import Fact
+from utak.simulator.scenario.expectation import weights_of
 
 
 class ExpectationOutcome(NamedTuple):

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.terms import Fact
-from kb.task.task import Task, read_task
-from simulator.scenario.expectation import read_expectations
-from simulator.scenario.picture import read_picture
-from simulator.scenario.worldfile import read_world
-from simulator.world.world import World
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.terms import Fact
+from utak.kb.task.task import Task, read_task
+from utak.simulator.scenario.expectation import read_expectations
+from utak.simulator.scenario.picture import read_picture
+from utak.simulator.scenario.worldfile import read_world
+from utak.simulator.world.world import World
 
 _T = TypeVar("_T")
 

@@ -20,7 +20,7 @@ class Settings:
 def kb_files_named(paths: list[str]) -> tuple[str, ...]:
     """Return the rule files of `--kb`, read and tested once."""
     if paths:
-        from kb.reasoning.user_rules import (
+        from utak.kb.reasoning.user_rules import (
             read_tested_rules,  # imported only when there are users' rules: it takes time
         )
 

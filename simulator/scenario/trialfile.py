@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.language.arguments import (
+from utak.kb.language.arguments import (
     ArgumentType,
     Complaint,
     abbreviated,
@@ -19,12 +19,12 @@ from kb.language.arguments import (
     integer_argument,
     word_argument,
 )
-from kb.language.diagnostics import BadInputError, Problem, did_you_mean
-from kb.language.reader import parse_facts
-from kb.language.source_text import Source, read_source
-from kb.language.terms import Fact, Number, Symbol, Term, Text
-from kb.language.vocabulary import MAX_WEIGHT_POINTS, Vocabulary, check_facts, fact_argument
-from simulator.scenario.settings import PATH_CHOICES
+from utak.kb.language.diagnostics import BadInputError, Problem, did_you_mean
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import Source, read_source
+from utak.kb.language.terms import Fact, Number, Symbol, Term, Text
+from utak.kb.language.vocabulary import MAX_WEIGHT_POINTS, Vocabulary, check_facts, fact_argument
+from utak.simulator.scenario.settings import PATH_CHOICES
 
 TRIAL_FILE = "trial.lp"  # its name in a scenario folder (docs/testing.md)
 MAX_TRIAL_STEPS = 1_000_000  # commands; as for --max-steps

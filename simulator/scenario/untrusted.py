@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from kb.language.diagnostics import CannotOpenError
-from kb.language.source_text import lies_outside
+from utak.kb.language.diagnostics import CannotOpenError
+from utak.kb.language.source_text import lies_outside
 
 SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp", "trial.lp")  # all files of a scenario
 

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import shapely
-
-from kb.language.diagnostics import BadInputError, Problem
-from kb.language.reader import parse_facts
-from kb.language.source_text import Source, read_source
-from kb.language.terms import Fact, Number, Text
-from kb.language.vocabulary import WORLD_VOCABULARY, check_facts
-from kb.language.wkt import parse_wkt
-from simulator.world.world import VERGE_COLOUR, Thing, World
+from utak.kb.language.diagnostics import BadInputError, Problem
+from utak.kb.language.reader import parse_facts
+from utak.kb.language.source_text import Source, read_source
+from utak.kb.language.terms import Fact, Number, Text
+from utak.kb.language.vocabulary import WORLD_VOCABULARY, check_facts
+from utak.kb.language.wkt import parse_wkt
+from utak.simulator.world.world import VERGE_COLOUR, Thing, World
 
 MAX_TOUCHING_AREA = 1e-9  # square squares; shapes with a smaller common area only touch (docs/files.md)
 MIN_THING_AREA = 1e-4  # square squares; a smaller thing is taken for a mistake; a convention

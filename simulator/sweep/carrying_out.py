@@ -4,11 +4,11 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
-from simulator.episode.schema import complaints
-from simulator.sweep.contents import EXPECTATIONS_FILE
-from simulator.sweep.executors.tasks import Executor, TaskOutcome
-from simulator.sweep.plan import SweepPlan, SweepRun
-from simulator.sweep.results import ResultRow, ResultsProtocol, RowForm
+from utak.simulator.episode.schema import complaints
+from utak.simulator.sweep.contents import EXPECTATIONS_FILE
+from utak.simulator.sweep.executors.tasks import Executor, TaskOutcome
+from utak.simulator.sweep.plan import SweepPlan, SweepRun
+from utak.simulator.sweep.results import ResultRow, ResultsProtocol, RowForm
 
 ROW_NAMES = ("scenario", "noise", "seed")  # the values of a row that tell which run it is of
 Watch = Callable[[SweepRun, TaskOutcome], None]  # called after each run

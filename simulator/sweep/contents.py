@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from kb.language.source_text import read_source
+from utak.kb.language.source_text import read_source
 
 EXPECTATIONS_FILE = "expect.lp"
 # The files of a scenario that a run reads. trial.lp is no part of a run: it says how `utak test` runs and what it asks.

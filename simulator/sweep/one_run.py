@@ -4,21 +4,21 @@ import os
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.episode.episode import EpisodeLog
-from simulator.run.robots import make_robot
-from simulator.run.session import RobotMaker, Session
-from simulator.run.trial import faults_of
-from simulator.run.warming import warm
-from simulator.scenario.expectation import expects_verdict
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
-from simulator.sweep.contents import written
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import RobotMaker, Session
+from utak.simulator.run.trial import faults_of
+from utak.simulator.run.warming import warm
+from utak.simulator.scenario.expectation import expects_verdict
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.contents import written
 
 
 def prepare(argument: dict[str, Any]) -> None:
     """Compile the geometry kernels and load the robot, so that no run waits for them."""
-    from planner.cycle import Robot  # noqa: F401 (loading it takes time)
+    from utak.planner.cycle import Robot  # noqa: F401 (loading it takes time)
 
     warm(argument["carrying"], argument["paths"])
 

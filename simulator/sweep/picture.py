@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from statistics import median
 from xml.sax.saxutils import escape
 
-from simulator.sweep.summary import SweepCount, upper_percentile
-from simulator.terminal.streams import escape_controls
+from utak.simulator.sweep.summary import SweepCount, upper_percentile
+from utak.simulator.terminal.streams import escape_controls
 
 # Colours that colour-blind readers can tell apart (Okabe and Ito 2008), without the yellow, which is pale on white.
 MARK_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from simulator.scenario.settings import Settings
-from simulator.sweep.contents import ScenarioContents
-from simulator.sweep.executors.code_identity import code_identity
-from simulator.sweep.executors.tasks import WorkerTask
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.contents import ScenarioContents
+from utak.simulator.sweep.executors.code_identity import code_identity
+from utak.simulator.sweep.executors.tasks import WorkerTask
 
 SWEEP_VERSION = 1  # of the form of results; docs/sweeps.md
-RUN_FUNCTION = "simulator.sweep.one_run:run_one"  # what a worker does for a run
-PREPARATION_FUNCTION = "simulator.sweep.one_run:prepare"  # what each worker process does first
+RUN_FUNCTION = "utak.simulator.sweep.one_run:run_one"  # what a worker does for a run
+PREPARATION_FUNCTION = "utak.simulator.sweep.one_run:prepare"  # what each worker process does first
 SEED_LIMIT = 2**63  # seeds are below it
 MAX_RUNS = 200_000  # of a sweep; each takes about 2 kB of memory
 

@@ -14,9 +14,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple, Protocol
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, SourceSpan
-from kb.language.source_text import Source, lies_outside, read_bytes
-from simulator.episode.output_files import keep_first, open_for_writing, replace_whole
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, SourceSpan
+from utak.kb.language.source_text import Source, lies_outside, read_bytes
+from utak.simulator.episode.output_files import keep_first, open_for_writing, replace_whole
 
 STDOUT_NAME = "-"  # the name of a file that stands for the standard output
 MAX_RESULTS_BYTES = 2_000_000_000  # bytes; a convention

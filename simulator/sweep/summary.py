@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from statistics import NormalDist, median
 from typing import Any
 
-from simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG
-from simulator.sweep.results import ResultRow
+from utak.simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG
+from utak.simulator.sweep.results import ResultRow
 
 CONFIDENCE_LEVEL = 0.95  # of the intervals of rates; a convention
 UPPER_PERCENTILE = 0.95  # of the steps; a convention

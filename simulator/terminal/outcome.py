@@ -5,9 +5,9 @@ import sys
 from collections.abc import Callable
 from typing import ParamSpec
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.terminal import exits
-from simulator.terminal.streams import StreamError
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.streams import StreamError
 
 _Parameters = ParamSpec("_Parameters")
 

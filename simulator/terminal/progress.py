@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Hashable, Mapping
 from statistics import fmean
 
-from planner.under_way import UNDER_WAY
+from utak.planner.under_way import UNDER_WAY
 
 REPORT_SECONDS = 2.0  # between two reports; a convention
 

@@ -1,4 +1,4 @@
-"""Scenarios as tests: what `utak test` and the plugin of pytest (utak_pytest.py) run and say.
+"""Scenarios as tests: what `utak test` and the plugin of pytest (utak.pytest_plugin) run and say.
 
 Modules in reading order:
 

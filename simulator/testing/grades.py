@@ -4,8 +4,8 @@ import csv
 import io
 from collections.abc import Sequence
 
-from simulator.terminal.streams import escape_controls
-from simulator.testing.record import TrialRecord
+from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.testing.record import TrialRecord
 
 COLUMNS = ("scenario", "outcome", "earned", "possible", "verdict", "steps", "why")
 FORMULA_MARKS = ("=", "+", "-", "@")  # a spreadsheet takes a text that begins so for a formula

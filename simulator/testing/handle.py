@@ -1,7 +1,7 @@
 """The handle of a process that tries scenarios (simulator.testing.worker).
 
-The process is isolated: nothing in the working directory or on PYTHONPATH is executed, and whatever packages the user
-has under the names of ours, they do not meet. That is why the plugin of pytest loads this file alone, by its place.
+The process is isolated: nothing in the working directory or on PYTHONPATH is executed. The plugin of pytest loads this
+module alone, so it imports little.
 """
 
 import json
@@ -9,7 +9,7 @@ import subprocess
 from contextlib import suppress
 from typing import Any
 
-from utak_command import isolated_command
+from utak.launcher import isolated_command
 
 MAX_ENDING_SECONDS = 2.0  # seconds of wall-clock time in which a process ends after its input; a convention
 
@@ -67,7 +67,7 @@ class WorkerHandle:
 def _start(folder: str | None) -> "subprocess.Popen[bytes]":
     """Return a new process in a folder that is ready; raise WorkerEndedError when it does not start."""
     worker = subprocess.Popen(
-        isolated_command("simulator.testing.worker"),
+        isolated_command("utak.simulator.testing.worker"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         cwd=folder,

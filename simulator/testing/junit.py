@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 from xml.sax.saxutils import escape, quoteattr
 
-from simulator.terminal import exits
-from simulator.testing.record import TrialRecord
-from simulator.testing.wording import failure_report, total_score
+from utak.simulator.terminal import exits
+from utak.simulator.testing.record import TrialRecord
+from utak.simulator.testing.wording import failure_report, total_score
 
 SUITE_NAME = "utak"  # of the one test suite
 # What XML 1.0 cannot hold, not even as a reference; and marks that turn the direction of text.

@@ -6,12 +6,12 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from simulator.episode.episode import EpisodeLine
-from simulator.run.trial import ScenarioTrial, promised_points, run_trial
-from simulator.scenario.untrusted import refuse_outside_links
-from simulator.terminal import exits
-from simulator.terminal.action_in_words import describe
-from simulator.terminal.outcome import outcome_of
+from utak.simulator.episode.episode import EpisodeLine
+from utak.simulator.run.trial import ScenarioTrial, promised_points, run_trial
+from utak.simulator.scenario.untrusted import refuse_outside_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.terminal.outcome import outcome_of
 
 TrialRecord = dict[str, Any]  # one scenario of `utak test --json` (docs/testing.md)
 OUTCOME_NAMES = {  # by exit code: the word for the outcome of a scenario

@@ -7,12 +7,12 @@ from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
 
-from kb.language.diagnostics import CannotOpenError
-from simulator.run.trial import scenarios_in
-from simulator.terminal import exits
-from simulator.terminal.outcome import outcome_of
-from simulator.testing.handle import WorkerEndedError, WorkerHandle
-from simulator.testing.record import TrialRecord, Wish, broken_off, try_scenario, without_run
+from utak.kb.language.diagnostics import CannotOpenError
+from utak.simulator.run.trial import scenarios_in
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.outcome import outcome_of
+from utak.simulator.testing.handle import WorkerEndedError, WorkerHandle
+from utak.simulator.testing.record import TrialRecord, Wish, broken_off, try_scenario, without_run
 
 
 class FoundScenario(NamedTuple):

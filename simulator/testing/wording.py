@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from simulator.scenario.points import PointScore
-from simulator.terminal import exits
-from simulator.terminal.streams import escape_controls
-from simulator.testing.record import OUTCOME_NAMES, TrialRecord
+from utak.simulator.scenario.points import PointScore
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.testing.record import OUTCOME_NAMES, TrialRecord
 
 TEST_OUTCOME_WORDS = {  # by exit code: the word on a scenario's line, and the word in the summary
     exits.SUCCESS: ("ok", "passed"),

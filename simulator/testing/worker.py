@@ -1,16 +1,16 @@
 """The process that tries scenarios for another one: it reads one JSON line a wish and writes one a record.
 
-`simulator.testing.handle` starts it. It ends when its input does.
+`utak.simulator.testing.handle` starts it. It ends when its input does.
 """
 
 import json
 import os
 import sys
 
-from kb.language.operating_system import read_lines_from_parent
-from simulator.terminal.printing import as_json
-from simulator.testing.record import Wish, try_scenario
-from simulator.testing.wording import failure_report
+from utak.kb.language.operating_system import read_lines_from_parent
+from utak.simulator.terminal.printing import as_json
+from utak.simulator.testing.record import Wish, try_scenario
+from utak.simulator.testing.wording import failure_report
 
 READY_LINE = "ready"  # the first line of the process
 

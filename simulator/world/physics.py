@@ -9,14 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import Floats
-from geometry.motion.first_contact import MIN_EDGE_LENGTH, ContactBody, Obstacles, obstacle_part
-from geometry.motion.se2 import Motion, Rotate, Translate, direction
-from geometry.raster.rasterize import outline_edges
-from simulator.world.senses import ImpressionCodes, Senses, felt_colours, gray_levels
-from simulator.world.table import Table, TableColours
-from simulator.world.world import World
+from utak.geometry.kernels.arrays import Floats
+from utak.geometry.motion.first_contact import MIN_EDGE_LENGTH, ContactBody, Obstacles, obstacle_part
+from utak.geometry.motion.se2 import Motion, Rotate, Translate, direction
+from utak.geometry.raster.rasterize import outline_edges
+from utak.simulator.world.senses import ImpressionCodes, Senses, felt_colours, gray_levels
+from utak.simulator.world.table import Table, TableColours
+from utak.simulator.world.world import World
 
 TABLE_EDGE_WIDTH = 1.0  # squares; any width above 0 stops motions, because contacts are exact
 

@@ -9,11 +9,10 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Longs
-from geometry.raster.surroundings import survey_square
-from simulator.world.table import COLOUR_OF_CODE, Table, colour_code
-from simulator.world.world import VERGE_COLOUR
+from utak.geometry.kernels.arrays import Longs
+from utak.geometry.raster.surroundings import survey_square
+from utak.simulator.world.table import COLOUR_OF_CODE, Table, colour_code
+from utak.simulator.world.world import VERGE_COLOUR
 
 SENSED_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
 VIEW_ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field) of each zone, in squares, from the fovea outwards

@@ -10,10 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from geometry.kernels.arrays import Bools, Floats
-from geometry.raster.rasterize import outline_edges, window_of
-from simulator.world.world import VERGE_COLOUR, World
+from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.raster.rasterize import outline_edges, window_of
+from utak.simulator.world.world import VERGE_COLOUR, World
 
 TableColours = npt.NDArray[np.uint8]  # numbers of colours: the places of their letters in the alphabet, 0 for floor
 COLOUR_OF_CODE: tuple[str | None, ...] = (None, *string.ascii_lowercase)  # the letter of each number

@@ -9,6 +9,13 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from utak.kb.body import Body, Command, Move
+from utak.kb.perception.frame import turned
+from utak.kb.task.task import Task
+from utak.planner.cycle import Verdict
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.in_process import run_in_this_process
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 from benchmarks import campaign
 from benchmarks.harness.beliefs import Score
@@ -20,13 +27,6 @@ from benchmarks.harness.tally import narrowness as told_right
 from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial_of, trial_of_outcome, trial_task
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.scenes import RandomScenario
-from kb.body import Body, Command, Move
-from kb.perception.frame import turned
-from kb.task.task import Task
-from planner.cycle import Verdict
-from simulator.scenario.settings import Settings
-from simulator.sweep.executors.in_process import run_in_this_process
-from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 from tests.scripted import Scripted
 
 

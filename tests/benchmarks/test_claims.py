@@ -6,6 +6,10 @@ from pathlib import Path
 
 import pytest
 from shapely import Polygon, box
+from utak.kb.body import Body
+from utak.kb.task.task import Task
+from utak.planner.cycle import Verdict
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.claims import __main__ as campaign
 from benchmarks.claims import child
@@ -17,10 +21,6 @@ from benchmarks.claims.run import Limits, run_child, run_world
 from benchmarks.claims.table import table
 from benchmarks.worlds.odd.kinds import odd_world
 from benchmarks.worlds.odd.tasks import NO, YES
-from kb.body import Body
-from kb.task.task import Task
-from planner.cycle import Verdict
-from simulator.scenario.settings import Settings
 from tests.scripted import Scripted
 
 LIMITS = Limits(search=5)

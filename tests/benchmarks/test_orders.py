@@ -12,6 +12,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
+from utak.geometry.manipulation.goals import Inside
+from utak.geometry.manipulation.legs import Leg
+from utak.geometry.manipulation.plan_carrying import plan_carrying
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.kb.body import Body, Command, Move
+from utak.kb.task.task import Task
+from utak.planner.cycle import Verdict
+from utak.simulator.run.session import RobotMaker
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.in_process import run_in_this_process
+from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 
 from benchmarks.orders.__main__ import main
 from benchmarks.orders.asked import AskedRun, is_touching, puzzles, random_tasks
@@ -24,18 +36,6 @@ from benchmarks.orders.table import failures, table
 from benchmarks.worlds.floorplans import FloorPlan
 from benchmarks.worlds.several.kinds import several_world
 from benchmarks.worlds.several.tasks import SeveralWorld
-from geometry.manipulation.goals import Inside
-from geometry.manipulation.legs import Leg
-from geometry.manipulation.plan_carrying import plan_carrying
-from geometry.motion.se2 import Rotate, Translate
-from kb.body import Body, Command, Move
-from kb.task.task import Task
-from planner.cycle import Verdict
-from simulator.run.session import RobotMaker
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
-from simulator.sweep.executors.in_process import run_in_this_process
-from simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 from tests.scripted import Scripted
 
 ENOUGH_SECONDS = 300  # of the processor, also where kernels are compiled first; searches end when they find a way

@@ -1,7 +1,7 @@
 """The distance transform of a whole screen at once, without bands and skeleton."""
 
-from geometry.raster.distance_rows import fill_distance_rows, new_row_window
-from geometry.raster.distance_transform import count_steps_south
+from utak.geometry.raster.distance_rows import fill_distance_rows, new_row_window
+from utak.geometry.raster.distance_transform import count_steps_south
 
 
 def measure(free, square):

@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 import shapely
-
-from geometry.manipulation.plan_carrying import CarryingPlan
-from geometry.motion.se2 import Rotate
+from utak.geometry.manipulation.plan_carrying import CarryingPlan
+from utak.geometry.motion.se2 import Rotate
 
 MAX_PENETRATION = 1e-6  # squares: how far anything may enter a wall; above the skin of first contact
 POSES_PER_MOTION = 65  # poses checked in every motion; a convention

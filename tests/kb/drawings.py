@@ -4,16 +4,16 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from utak.kb.body import Move
+from utak.kb.knowledge import Knowledge
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
+from utak.kb.mapping.patch import patch_of
+from utak.kb.perception.frame import Frame
+from utak.kb.perception.interpretation import interpret_regions
+from utak.kb.perception.regions import label_of, map_regions
+from utak.kb.perception.retina import count_ranges
+from utak.kb.world.model import Node, WorldModel
 
-from kb.body import Move
-from kb.knowledge import Knowledge
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
-from kb.mapping.patch import patch_of
-from kb.perception.frame import Frame
-from kb.perception.interpretation import interpret_regions
-from kb.perception.regions import label_of, map_regions
-from kb.perception.retina import count_ranges
-from kb.world.model import Node, WorldModel
 from tests.kb.eyes import impression, utak_in, world_of
 
 LARGE_ROOM = ["b" * 44, *["b" + "." * 42 + "b"] * 42, "b" * 44]

@@ -4,8 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-
-from kb.body import Impression
+from utak.kb.body import Impression
 
 Occupied = Callable[[int, int], bool]
 Colours = Callable[[int, int], str]

@@ -6,29 +6,29 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
+from utak.geometry.kernels.arrays import Bools
+from utak.kb.body import Body
+from utak.kb.mapping.patch import Patch
+from utak.kb.task.binding import Reconciliation
+from utak.kb.task.task import Task
+from utak.kb.world.corners import corners
+from utak.kb.world.model import Node, WorldModel
+from utak.kb.world.rooms import rooms_of
+from utak.planner.agenda.decider import Decider
+from utak.planner.carrying.plan_executor import PlanExecutor
+from utak.planner.carrying.remaining_plan import PlanOperations
+from utak.planner.cycle import Options, Robot
+from utak.planner.deciding.pursuit import Pursuer
+from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.verification import Verifier
+from utak.planner.screen.projection import CostMaps
+from utak.planner.sights.walls import unfelt_walls
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
+from utak.simulator.run.session import RobotMaker
+from utak.simulator.run.warming import warm
+from utak.simulator.scenario.settings import Settings
 
-from geometry.kernels.arrays import Bools
-from kb.body import Body
-from kb.mapping.patch import Patch
-from kb.task.binding import Reconciliation
-from kb.task.task import Task
-from kb.world.corners import corners
-from kb.world.model import Node, WorldModel
-from kb.world.rooms import rooms_of
-from planner.agenda.decider import Decider
-from planner.carrying.plan_executor import PlanExecutor
-from planner.carrying.remaining_plan import PlanOperations
-from planner.cycle import Options, Robot
-from planner.deciding.pursuit import Pursuer
-from planner.deciding.stage_turn import StageTurn
-from planner.deciding.verification import Verifier
-from planner.screen.projection import CostMaps
-from planner.sights.walls import unfelt_walls
-from planner.situation import Situation
-from planner.stages import Stage
-from simulator.run.session import RobotMaker
-from simulator.run.warming import warm
-from simulator.scenario.settings import Settings
 from tests.kb.drawings import known_model
 
 NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())

@@ -7,14 +7,14 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
+from utak.kb.language.reader import facts_from_text
+from utak.kb.perception.frame import Frame
+from utak.kb.task.task import Task
+from utak.planner.constraints import in_robot_frame, in_view_frame, region_squares, swept_region
+from utak.planner.goals.placement import forbidden_squares
+from utak.planner.screen.projection import UNSEEN_LEVEL, CostMaps
+from utak.planner.situation import Situation, regions_kept_off
 
-from kb.language.reader import facts_from_text
-from kb.perception.frame import Frame
-from kb.task.task import Task
-from planner.constraints import in_robot_frame, in_view_frame, region_squares, swept_region
-from planner.goals.placement import forbidden_squares
-from planner.screen.projection import UNSEEN_LEVEL, CostMaps
-from planner.situation import Situation, regions_kept_off
 from tests.planner.situations import known_situation
 
 ROWS = [

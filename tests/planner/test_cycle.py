@@ -7,19 +7,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from utak.kb.body import Command, Impression, Move
+from utak.kb.language.diagnostics import SourceSpan
+from utak.kb.language.terms import Symbol
+from utak.kb.perception.frame import turned
+from utak.kb.task.task import Claim, Parameter, Task
+from utak.kb.world.corners import corners
+from utak.kb.world.rooms import rooms_of
+from utak.planner.agenda.decider import Decider
+from utak.planner.cycle import Options, Robot
+from utak.planner.screen.projection import CostMaps
+from utak.planner.stages import constraints, stages
 
 from benchmarks.harness.trial import Conditions, run_trial
-from kb.body import Command, Impression, Move
-from kb.language.diagnostics import SourceSpan
-from kb.language.terms import Symbol
-from kb.perception.frame import turned
-from kb.task.task import Claim, Parameter, Task
-from kb.world.corners import corners
-from kb.world.rooms import rooms_of
-from planner.agenda.decider import Decider
-from planner.cycle import Options, Robot
-from planner.screen.projection import CostMaps
-from planner.stages import constraints, stages
 from tests.kb.drawings import known_model
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 from tests.planner.situations import all_felt
@@ -286,8 +286,8 @@ def test_stages_and_constraints() -> None:
 
 
 def test_the_destination_of_a_corner_is_its_square() -> None:
-    from planner.goals.robot_goals import destination
-    from planner.situation import Situation
+    from utak.planner.goals.robot_goals import destination
+    from utak.planner.situation import Situation
 
     model = known_model(EMPTY)
     situation = _situation(Situation, model, {})
@@ -301,8 +301,8 @@ def test_the_destination_of_a_corner_is_its_square() -> None:
 
 
 def test_the_destination_of_an_object_is_beside_it() -> None:
-    from planner.goals.robot_goals import destination
-    from planner.situation import Situation
+    from utak.planner.goals.robot_goals import destination
+    from utak.planner.situation import Situation
 
     model = known_model(THINGS)
     (node,) = model.objects

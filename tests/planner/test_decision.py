@@ -5,11 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from utak.planner.decision import Decision, TaskVerdict, impossible
 
-import planner
-from planner.decision import Decision, TaskVerdict, impossible
-
-ROOT = Path(planner.__file__).parent
+ROOT = Path(__file__).resolve().parents[2] / "planner"
 OWNER = ROOT / "decision.py"
 
 

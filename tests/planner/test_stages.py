@@ -1,8 +1,8 @@
 """The stages of a task: its steps in order, each as often as it is stated."""
 
-from kb.language.reader import facts_from_text
-from kb.task.task import Task
-from planner.stages import stages
+from utak.kb.language.reader import facts_from_text
+from utak.kb.task.task import Task
+from utak.planner.stages import stages
 
 
 def test_a_repeated_step_is_a_stage_of_its_own() -> None:

@@ -11,8 +11,8 @@ import types
 from dataclasses import dataclass
 from typing import Any
 
-from kb.body import DIRECTIONS, Body, Command, Grasp, Impression, Move, Push, Release, Turn
-from kb.task.task import Task
+from utak.kb.body import DIRECTIONS, Body, Command, Grasp, Impression, Move, Push, Release, Turn
+from utak.kb.task.task import Task
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,13 @@ class Robot:
 
 def install(robot: type[Robot] = Robot) -> None:
     """Let the command line make this robot, or another one of its kind."""
-    module = types.ModuleType("planner.cycle")
+    module = types.ModuleType("utak.planner.cycle")
     module.Robot, module.Options = robot, Options  # type: ignore[attr-defined]
-    sys.modules["planner.cycle"] = module
+    sys.modules["utak.planner.cycle"] = module
 
 
 if __name__ == "__main__":
-    from simulator.cli.main import main
+    from utak.simulator.cli.main import main
 
     install()
     sys.exit(main())

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from gymnasium import spaces
 
-from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from utak.kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
 
 ACTION_KINDS = ("move", "push", "turn", "grasp", "release")  # by the number of `do`
 HALF_TURN = 180.0  # degrees: the greatest turn in one action; a convention

@@ -7,11 +7,11 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from simulator.scenario.picture import draw
-from simulator.world.senses import SENSED_FIELDS, SENSED_NUMBERS, ImpressionCodes
 from utak.gym.actions import action_form
 from utak.gym.game import Game, Rules, Scenarios, games
 from utak.gym.pixels import Image, image
+from utak.simulator.scenario.picture import draw
+from utak.simulator.world.senses import SENSED_FIELDS, SENSED_NUMBERS, ImpressionCodes
 
 MAX_SEEN_LEVEL, MAX_FELT_COLOUR = 7, 26  # the greatest gray level, and the number of the last letter
 MAX_SEED = 2**31  # seeds that are drawn lie below; a convention

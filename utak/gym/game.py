@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.body import Command
-from simulator.run.embodiment import carry_out
-from simulator.scenario.scenario import Scenario as ScenarioContent
-from simulator.world.physics import Tabletop
 from utak.gym.progress import ExpectationProgress, time_limit
+from utak.kb.body import Command
 from utak.scenario import Scenario
+from utak.simulator.run.embodiment import carry_out
+from utak.simulator.scenario.scenario import Scenario as ScenarioContent
+from utak.simulator.world.physics import Tabletop
 
 REWARDS = ("progress", "sparse", None)
 Scenarios = Scenario | Path | str | Sequence[Scenario | Path | str]

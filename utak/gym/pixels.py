@@ -6,9 +6,9 @@ import string
 import numpy as np
 import numpy.typing as npt
 
-from simulator.replay.drawing import LETTER_HUES
-from simulator.world.physics import Tabletop
-from simulator.world.world import VERGE_COLOUR
+from utak.simulator.replay.drawing import LETTER_HUES
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import VERGE_COLOUR
 
 MAX_BLOCK_PIXELS = 10  # pixels along the side of a square; a convention
 MAX_FRAME_PIXELS = 640  # pixels along the longer side of an image, where squares are not smaller than one; a convention

@@ -1,7 +1,7 @@
-"""Which expectations of expect.lp are met, halt after halt; the same as `simulator.scenario.expectation` says at once.
+"""Which expectations of expect.lp are met, halt after halt; as `utak.simulator.scenario.expectation` says at once.
 
 Each expectation is a watch that sees every halt and keeps what it needs, so that a halt costs little. What an
-expectation means at one halt is said in `simulator.scenario.expectation` alone.
+expectation means at one halt is said in `utak.simulator.scenario.expectation` alone.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -10,8 +10,8 @@ from typing import Any
 
 import shapely
 
-from kb.language.terms import Fact
-from simulator.scenario.expectation import (
+from utak.kb.language.terms import Fact
+from utak.simulator.scenario.expectation import (
     MIN_CIRCLING_DEGREES,
     Snapshot,
     is_near,
@@ -22,7 +22,7 @@ from simulator.scenario.expectation import (
     winding_of_step,
     with_tolerance,
 )
-from simulator.world.world import World, outer_ring
+from utak.simulator.world.world import World, outer_ring
 
 NOT_OF_THE_TABLE = ("fails", "verdict")  # expectations about what a mind says
 TIME_LIMIT = "within"  # the expectation about the number of commands

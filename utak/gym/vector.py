@@ -7,7 +7,6 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from simulator.world.senses import SENSED_NUMBERS
 from utak.gym.actions import action_form
 from utak.gym.environment import (
     MAX_SEED,
@@ -18,6 +17,7 @@ from utak.gym.environment import (
     split,
 )
 from utak.gym.game import Rules, Scenarios, games
+from utak.simulator.world.senses import SENSED_NUMBERS
 
 
 class TabletopVectorEnv(VectorEnv[Any, Any, Any]):

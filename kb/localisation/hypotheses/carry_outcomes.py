@@ -9,12 +9,11 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.localisation.hypotheses.frames import Position
-from kb.objects.held_object import Square
-from kb.objects.subcell_extent import SubcellExtent
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.kb.localisation.hypotheses.frames import Position
+from utak.kb.objects.held_object import Square
+from utak.kb.objects.subcell_extent import SubcellExtent
 
 END_SPACING = 0.25  # squares between the tried ends of a motion; a convention
 CONTACT_REACH = 0.5  # squares ahead of a blocked body within which the obstacle stands; tuned on random worlds

@@ -9,16 +9,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Motion, Rotate
-from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, advance, motion_length, partial_outcome
-from kb.localisation.hypotheses.frames import Position
-from kb.mapping.completions import Completions
-from kb.mapping.obstacle_chance import ObstacleChance
-from kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import HeldObject, Square
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Motion, Rotate
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, advance, motion_length, partial_outcome
+from utak.kb.localisation.hypotheses.frames import Position
+from utak.kb.mapping.completions import Completions
+from utak.kb.mapping.obstacle_chance import ObstacleChance
+from utak.kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import HeldObject, Square
 
 LIKELIEST_ODDS_GAP = 1.0  # log odds within which squares count as the likeliest ones; tuned on random worlds
 CONTACT_DISTANCE_ERROR = 0.25  # squares by which the place of a contact may be estimated wrongly; tuned

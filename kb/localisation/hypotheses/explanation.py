@@ -5,13 +5,13 @@ import statistics
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
-from kb.localisation.hypotheses.frames import FrameHypothesis, Position
-from kb.localisation.hypotheses.reestimation import ReestimatedWalk
-from kb.objects.held_object import HeldObject, Square
-from kb.perception.frame import CENTRE, Frame
-from kb.reasoning.encodings import KB_ENCODINGS
-from kb.reasoning.solver import solve
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
+from utak.kb.localisation.hypotheses.frames import FrameHypothesis, Position
+from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk
+from utak.kb.objects.held_object import HeldObject, Square
+from utak.kb.perception.frame import CENTRE, Frame
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.solver import solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
 CONTRADICTION_WEIGHT = 2  # fields that a contradiction of observations counts as: more than any other frame costs

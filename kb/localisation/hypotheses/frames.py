@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.counts.contradictions import total_contradictions
-from kb.perception.frame import CENTRE, Frame
+from utak.geometry.counts.contradictions import total_contradictions
+from utak.kb.perception.frame import CENTRE, Frame
 
 Position = tuple[float, float]  # (x, y) or (east, north) in squares; the frame is named where it is used
 OriginBox = tuple[float, float, float, float]  # west, south, east, north, within the square of waking, map frame

@@ -11,13 +11,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-
-from geometry.counts.gibbs import DRAWN, EDGE_COST, OCCUPIED, costs, pictures
-from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
-from kb.localisation.hypotheses.remap import remap
-from kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, SceneKey, given_squares, scenes
-from kb.mapping.occupancy import OccupancyMap
-from kb.perception.frame import Frame
+from utak.geometry.counts.gibbs import DRAWN, EDGE_COST, OCCUPIED, costs, pictures
+from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
+from utak.kb.localisation.hypotheses.remap import remap
+from utak.kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, SceneKey, given_squares, scenes
+from utak.kb.mapping.occupancy import OccupancyMap
+from utak.kb.perception.frame import Frame
 
 LOG_ODDS_PER_COST = 0.8  # log odds against a map for each unit of its cost; tuned
 START_INVERSE_TEMPERATURE = 0.5  # of the annealing; tuned

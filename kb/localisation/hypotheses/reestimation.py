@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from geometry.motion.se2 import Translate
-from kb.localisation.hypotheses.frames import (
+from utak.geometry.motion.se2 import Translate
+from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,
     FrameHypothesis,
     ObjectPose,
@@ -26,17 +25,17 @@ from kb.localisation.hypotheses.frames import (
     place_squares,
     stack_ranges,
 )
-from kb.localisation.hypotheses.remap import MapReplay, RemappedMap, ReplayPrefixes, remap
-from kb.localisation.hypotheses.walk_outcomes import (
+from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, ReplayPrefixes, remap
+from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
     MotionHypothesis,
     add,
     line_crossings,
     observation_places,
 )
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
-from kb.objects.held_object import HeldObject, Square
-from kb.perception.frame import Frame
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.kb.objects.held_object import HeldObject, Square
+from utak.kb.perception.frame import Frame
 
 MAX_REESTIMATED_HYPOTHESES = 90  # hypotheses in which one motion is re-estimated: as many as there are orientations
 QUICK_CHECK_OBSERVATIONS = 3  # observations, about, that are compared before all: most contradictions show there

@@ -13,16 +13,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.components import components, with_edge_neighbours
-from geometry.shapes.fit import fit_shapes
-from kb.localisation.hypotheses.frames import ObjectPose, Observation, Position, observation_squares
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
-from kb.mapping.patch import Patch, patch_of_polygon
-from kb.objects.held_object import HeldObject, is_grid_aligned, snap_to_grid, subtract_held_objects
-from kb.objects.subcell_extent import SubcellExtent
-from kb.perception.frame import Frame
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.raster.components import components, with_edge_neighbours
+from utak.geometry.shapes.fit import fit_shapes
+from utak.kb.localisation.hypotheses.frames import ObjectPose, Observation, Position, observation_squares
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.kb.mapping.patch import Patch, patch_of_polygon
+from utak.kb.objects.held_object import HeldObject, is_grid_aligned, snap_to_grid, subtract_held_objects
+from utak.kb.objects.subcell_extent import SubcellExtent
+from utak.kb.perception.frame import Frame
 
 MAX_FRAME_SKEW = 8.0  # degrees between two frames up to which an outline measured in one serves in the other; tuned
 MAX_OPEN_SHARE = 0.25  # open squares of an outline, as a share of its full ones, up to which it is fitted anew; tuned

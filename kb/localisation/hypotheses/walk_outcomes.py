@@ -11,9 +11,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-
-from kb.localisation.hypotheses.frames import FrameHypothesis, Position
-from kb.objects.held_object import Square
+from utak.kb.localisation.hypotheses.frames import FrameHypothesis, Position
+from utak.kb.objects.held_object import Square
 
 MAX_WALK_SLIP = 2  # squares from the predicted end within which a slipped walk is looked for; tuned
 LINE_DISTANCE = 1e-6  # squares from a grid line to a place right beside it: contacts of the physics are that exact

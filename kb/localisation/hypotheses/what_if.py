@@ -13,18 +13,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-
-from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.body import Command, Move, Push, Turn
-from kb.localisation.hypotheses.carry_outcomes import (
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.kb.body import Command, Move, Push, Turn
+from utak.kb.localisation.hypotheses.carry_outcomes import (
     END_SPACING,
     CarryOutcome,
     blocked_by_known,
     other_outcomes,
     predicted_outcome,
 )
-from kb.localisation.hypotheses.contacts import Obstructions
-from kb.localisation.hypotheses.frames import (
+from utak.kb.localisation.hypotheses.contacts import Obstructions
+from utak.kb.localisation.hypotheses.frames import (
     FieldRanges,
     FrameHypothesis,
     Observation,
@@ -33,11 +32,11 @@ from kb.localisation.hypotheses.frames import (
     consistent_hypotheses,
     grid_cell_size,
 )
-from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, ReplayPrefixes
-from kb.mapping.completions import Completions
-from kb.mapping.occupancy import OccupancyMap
-from kb.objects.held_object import HeldObject, subtract_held_objects
-from kb.perception.frame import Frame
+from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, ReplayPrefixes
+from utak.kb.mapping.completions import Completions
+from utak.kb.mapping.occupancy import OccupancyMap
+from utak.kb.objects.held_object import HeldObject, subtract_held_objects
+from utak.kb.perception.frame import Frame
 
 MAX_JUDGING_OBSERVATIONS = 24  # last observations by which frames are judged once objects were moved; tuned
 UNSETTLED_MARGIN = 1.5  # squares around a moved object within which observations need not agree; tuned

@@ -10,17 +10,17 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
-from geometry.motion.se2 import Motion, Translate
-from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, partial_outcome, predicted_outcome
-from kb.localisation.hypotheses.contacts import NO_SQUARES, ContactHypothesis
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import Position
-from kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
-from kb.localisation.hypotheses.walk_outcomes import line_crossings, observation_places
-from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.obstacle_chance import ObstacleChance
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
-from kb.objects.held_object import HeldObject, Square
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, partial_outcome, predicted_outcome
+from utak.kb.localisation.hypotheses.contacts import NO_SQUARES, ContactHypothesis
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import Position
+from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from utak.kb.localisation.hypotheses.walk_outcomes import line_crossings, observation_places
+from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.mapping.obstacle_chance import ObstacleChance
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.kb.objects.held_object import HeldObject, Square
 
 NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
 MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considered; tuned

@@ -9,13 +9,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from geometry.motion.se2 import Motion, Rotate
-from kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, other_outcomes, predicted_outcome
-from kb.localisation.hypotheses.frames import Position
-from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import OCCUPIED
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import GRID_CORNER_TOLERANCE, HeldObject
+from utak.geometry.motion.se2 import Motion, Rotate
+from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, other_outcomes, predicted_outcome
+from utak.kb.localisation.hypotheses.frames import Position
+from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.mapping.occupancy import OCCUPIED
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import GRID_CORNER_TOLERANCE, HeldObject
 
 MIN_CROWDED_SQUARES = 4  # newly occupied squares right beside a turned object from which its turn is doubted; tuned
 CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: its neighbours

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
 from typing import NamedTuple
 
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Translate
-from kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obstructions, square_polygon
-from kb.localisation.hypotheses.frames import (
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Translate
+from utak.kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obstructions, square_polygon
+from utak.kb.localisation.hypotheses.frames import (
     Observation,
     Position,
     any_origin,
@@ -22,20 +22,20 @@ from kb.localisation.hypotheses.frames import (
     frames_to_try,
     observation_squares,
 )
-from kb.localisation.hypotheses.reestimation import (
+from utak.kb.localisation.hypotheses.reestimation import (
     ReestimatedWalk,
     WalkCorrection,
     WalkEnd,
     WalkInFrame,
     remap_if_consistent,
 )
-from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
-from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
-from kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import HeldObject, Square, is_grid_aligned
-from kb.perception.frame import Frame
+from utak.kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
+from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
+from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
+from utak.kb.perception.frame import Frame
 
 MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with the origin: bounds the time; tuned
 MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bounds the time; tuned

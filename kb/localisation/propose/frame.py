@@ -8,9 +8,9 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kb.localisation.hypotheses.carry_outcomes import partial_outcome
-from kb.localisation.hypotheses.contacts import Obstructions
-from kb.localisation.hypotheses.frames import (
+from utak.kb.localisation.hypotheses.carry_outcomes import partial_outcome
+from utak.kb.localisation.hypotheses.contacts import Obstructions
+from utak.kb.localisation.hypotheses.frames import (
     OFF_CENTRE_COST,
     FrameHypothesis,
     any_origin,
@@ -18,13 +18,13 @@ from kb.localisation.hypotheses.frames import (
     exact_hypothesis,
     frames_to_try,
 )
-from kb.localisation.hypotheses.walk_outcomes import observation_places
-from kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from kb.localisation.propose.blocked import likeliest_ends
-from kb.localisation.propose.origin import frames_of_coarse_origins, origin_cost
-from kb.localisation.propose.origin_from_turns import origin_from_turn
-from kb.objects.held_object import Square
-from kb.perception.frame import CENTRE, Frame
+from utak.kb.localisation.hypotheses.walk_outcomes import observation_places
+from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from utak.kb.localisation.propose.blocked import likeliest_ends
+from utak.kb.localisation.propose.origin import frames_of_coarse_origins, origin_cost
+from utak.kb.localisation.propose.origin_from_turns import origin_from_turn
+from utak.kb.objects.held_object import Square
+from utak.kb.perception.frame import CENTRE, Frame
 
 SEARCHED_ANGLE_MARGIN = 2  # degrees around the hypotheses left in which orientations are taken up again; tuned
 MAX_SEARCHED_SPAN = 8  # degrees between the hypotheses left up to which all of them are searched around; tuned

@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Motion, Translate
-from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
-from kb.objects.held_object import HeldObject, outline_tolerance
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
+from utak.kb.objects.held_object import HeldObject, outline_tolerance
 
 MIN_THWARTED_MOTIONS = 2  # motions without effect or reason from which the place of an object is inexact; tuned
 MIN_MOVED_DISTANCE = 0.2  # squares: an object blocked before this did not move; tuned

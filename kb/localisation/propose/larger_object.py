@@ -9,14 +9,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import shapely
-
-from geometry.motion.se2 import Motion, Translate
-from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
-from kb.mapping.patch import patch_of_polygon, patch_of_squares
-from kb.objects.held_object import HeldObject, Square, is_grid_aligned
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.kb.mapping.patch import patch_of_polygon, patch_of_squares
+from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
 
 MAX_HIDDEN_DEPTH = 8  # squares by which an object may go on in what seems to be wall; a bound on time
 BESIDE_END = range(-3, 4)  # squares about the end of an object: one field of 4 x 4 may show them together (derived)

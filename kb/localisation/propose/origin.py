@@ -9,13 +9,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
-from kb.localisation.hypotheses.explanation import Explanation, reestimated_explanation
-from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
-from kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
-from kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_walk
-from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from kb.perception.frame import CENTRE, Frame
+from utak.kb.localisation.hypotheses.explanation import Explanation, reestimated_explanation
+from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
+from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_walk
+from utak.kb.localisation.hypotheses.remap import ReplayPrefixes, remap
+from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.perception.frame import CENTRE, Frame
 
 MAX_WALKS_WITH_ORIGIN = 3  # last walks that are re-estimated together with the origin: bounds the time; tuned
 COARSE_GRID = 7  # origins along either side of the square of waking: bounds the time; tuned

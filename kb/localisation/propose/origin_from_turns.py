@@ -13,10 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-
-from kb.localisation.hypotheses.carry_outcomes import motion_length, partial_outcome
-from kb.localisation.hypotheses.contacts import likeliest_contact_near
-from kb.localisation.hypotheses.frames import (
+from utak.kb.localisation.hypotheses.carry_outcomes import motion_length, partial_outcome
+from utak.kb.localisation.hypotheses.contacts import likeliest_contact_near
+from utak.kb.localisation.hypotheses.frames import (
     FrameHypothesis,
     OriginBox,
     Position,
@@ -24,8 +23,8 @@ from kb.localisation.hypotheses.frames import (
     grid_cell_size,
     origin_grid,
 )
-from kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from kb.perception.frame import Frame
+from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from utak.kb.perception.frame import Frame
 
 COARSE_ARC = 0.5  # squares that the outermost point of an object goes in one coarse cell of a turn; tuned
 COARSE_CUTS = 4  # coarse cells along either side of the square; tuned

@@ -8,17 +8,16 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import shapely
-
-from geometry.kernels.arrays import Bools
-from geometry.motion.se2 import Motion, Translate
-from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
-from kb.localisation.hypotheses.contacts import square_polygon
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import OCCUPIED
-from kb.mapping.patch import Patch, patch_of_polygon
-from kb.objects.held_object import HeldObject, is_grid_aligned
-from kb.perception.seams import halves
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.motion.se2 import Motion, Translate
+from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
+from utak.kb.localisation.hypotheses.contacts import square_polygon
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.mapping.occupancy import OCCUPIED
+from utak.kb.mapping.patch import Patch, patch_of_polygon
+from utak.kb.objects.held_object import HeldObject, is_grid_aligned
+from utak.kb.perception.seams import halves
 
 
 def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:

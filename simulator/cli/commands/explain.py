@@ -5,24 +5,24 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli.commands.query import go_to, step_number
-from simulator.cli.commands.run import add_settings, settings_of
-from simulator.scenario.untrusted import refuse_links
-from simulator.terminal import exits
-from simulator.terminal.numbers import parse_decimal, parse_whole
-from simulator.terminal.printing import as_json
-from simulator.terminal.streams import escape_controls
+from utak.simulator.cli.commands.query import go_to, step_number
+from utak.simulator.cli.commands.run import add_settings, settings_of
+from utak.simulator.scenario.untrusted import refuse_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import parse_decimal, parse_whole
+from utak.simulator.terminal.printing import as_json
+from utak.simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb.evidence.reason import Reason
-    from simulator.episode.episode import Episode
-    from simulator.explaining.fixing.changes import WorldChange
-    from simulator.explaining.fixing.proving import Budget, Outcome
-    from simulator.explaining.fixing.recorded import RecordedRun
-    from simulator.explaining.fixing.search import FixReport
-    from simulator.explaining.questions import Questions
+    from utak.kb.evidence.reason import Reason
+    from utak.simulator.episode.episode import Episode
+    from utak.simulator.explaining.fixing.changes import WorldChange
+    from utak.simulator.explaining.fixing.proving import Budget, Outcome
+    from utak.simulator.explaining.fixing.recorded import RecordedRun
+    from utak.simulator.explaining.fixing.search import FixReport
+    from utak.simulator.explaining.questions import Questions
 
 
 def add(parts: Any) -> None:
@@ -64,7 +64,7 @@ def execute(options: argparse.Namespace) -> int:
         return exits.USAGE
     if options.fix:
         return _fix(options)
-    from simulator.explaining.questions import questions_of_episode, rule_paths
+    from utak.simulator.explaining.questions import questions_of_episode, rule_paths
 
     questions = questions_of_episode(_episode(options), rule_paths(options.kb))
     if questions.lacking:
@@ -79,12 +79,12 @@ def execute(options: argparse.Namespace) -> int:
 
 def _episode(options: argparse.Namespace) -> "Episode":
     """Return the episode that was named, or that of a run of the scenario, up to the step in question."""
-    from simulator.episode.episode import Episode, read_begun_episode
+    from utak.simulator.episode.episode import Episode, read_begun_episode
 
     refuse_links(options, options.story)
     if not Path(options.story).is_dir():
         return read_begun_episode(options.story)
-    from simulator.run.story import open_story
+    from utak.simulator.run.story import open_story
 
     story = open_story(options.story, settings_of(options))
     go_to(story, options.story, options.at)
@@ -104,7 +104,7 @@ def _answer(questions: "Questions", options: argparse.Namespace) -> "Reason":
 
 def _text(reason: "Reason", depth: str) -> str:
     """Return a tree of reasons as text."""
-    from kb.evidence.reason import Depth
+    from utak.kb.evidence.reason import Depth
 
     return reason.text(Depth(depth))
 
@@ -131,13 +131,13 @@ def _usage_problem(options: argparse.Namespace) -> str:
 
 def _fix(options: argparse.Namespace) -> int:
     """Print the smallest changes with which the run works; return whether there are any."""
-    from kb.evidence.reason import Depth
-    from simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget
-    from simulator.explaining.fixing.recorded import recorded_run
-    from simulator.explaining.fixing.report import is_repeated, report_text, report_values
-    from simulator.explaining.fixing.search import find_fixes
-    from simulator.explaining.questions import rule_paths
-    from simulator.scenario.folder_writer import check_folder
+    from utak.kb.evidence.reason import Depth
+    from utak.simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget
+    from utak.simulator.explaining.fixing.recorded import recorded_run
+    from utak.simulator.explaining.fixing.report import is_repeated, report_text, report_values
+    from utak.simulator.explaining.fixing.search import find_fixes
+    from utak.simulator.explaining.questions import rule_paths
+    from utak.simulator.scenario.folder_writer import check_folder
 
     rules = rule_paths(options.kb)
     run = recorded_run(options.story, _episode(options), rules)
@@ -161,8 +161,8 @@ def _fix(options: argparse.Namespace) -> int:
 
 def _write_fix(report: "FixReport", folder: str, number: int | None) -> int:
     """Write one of the changed scenarios; return the exit code."""
-    from simulator.explaining.fixing.changes import Led, MoreCommands, variant_of
-    from simulator.explaining.fixing.writing import write_scenario
+    from utak.simulator.explaining.fixing.changes import Led, MoreCommands, variant_of
+    from utak.simulator.explaining.fixing.writing import write_scenario
 
     stated = [
         not any(isinstance(change, Led | MoreCommands) for change in fix.changes) for fix in report.fixes
@@ -181,7 +181,7 @@ def _progress_printer(
     run: "RecordedRun", budget: "Budget"
 ) -> "Callable[[int, tuple[WorldChange, ...], Outcome], None]":
     """Return the function that prints one line after each run, on a terminal only."""
-    from simulator.explaining.fixing.report import changes_in_words, outcome_in_words
+    from utak.simulator.explaining.fixing.report import changes_in_words, outcome_in_words
 
     def tell(number: int, changes: "tuple[WorldChange, ...]", outcome: "Outcome") -> None:
         what = changes_in_words(changes, run.scenario.world) if changes else "unchanged"

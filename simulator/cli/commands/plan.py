@@ -4,17 +4,17 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli.commands.query import go_to, step_number
-from simulator.cli.commands.run import add_settings, settings_of
-from simulator.scenario.untrusted import refuse_links
-from simulator.terminal import exits
-from simulator.terminal.printing import as_json
-from simulator.terminal.streams import escape_controls
+from utak.simulator.cli.commands.query import go_to, step_number
+from utak.simulator.cli.commands.run import add_settings, settings_of
+from utak.simulator.scenario.untrusted import refuse_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.printing import as_json
+from utak.simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
-    from kb.world.stated_plan import StatedPlan
-    from simulator.run.live_story import LiveStory
-    from simulator.run.recorded_story import RecordedStory
+    from utak.kb.world.stated_plan import StatedPlan
+    from utak.simulator.run.live_story import LiveStory
+    from utak.simulator.run.recorded_story import RecordedStory
 
 
 def add(parts: Any) -> None:
@@ -37,7 +37,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Go to the step and print its plan."""
-    from simulator.run.story import open_story
+    from utak.simulator.run.story import open_story
 
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
@@ -59,8 +59,8 @@ def execute(options: argparse.Namespace) -> int:
 
 def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
     """Return the plan at the current step of a story; None when there is none."""
-    from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-    from kb.world.stated_plan import stated_plan
+    from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+    from utak.kb.world.stated_plan import stated_plan
 
     try:
         return stated_plan(story.facts)
@@ -72,7 +72,7 @@ def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None
 
 def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
     """Return a plan for all goals that has steps: the first one of a run, the last one of an episode."""
-    from simulator.run.recorded_story import RecordedStory
+    from utak.simulator.run.recorded_story import RecordedStory
 
     if isinstance(story, RecordedStory):
         last = len(story.lines) - 1

@@ -5,14 +5,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli.commands.run import DUMP_HELP, add_settings, settings_of
-from simulator.scenario.untrusted import refuse_links
-from simulator.terminal import exits
-from simulator.terminal.numbers import parse_whole
-from simulator.terminal.printing import as_json
+from utak.simulator.cli.commands.run import DUMP_HELP, add_settings, settings_of
+from utak.simulator.scenario.untrusted import refuse_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import parse_whole
+from utak.simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
-    from simulator.run.story import Story
+    from utak.simulator.run.story import Story
 
 MAX_LIMIT_ROWS = 1_000_000  # the greatest --limit, in rows; a convention
 
@@ -35,8 +35,8 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Go to the step, answer the query and print the answer."""
-    from kb.reasoning.query import MAX_ANSWER_ROWS, QueryEngine, QueryLimitError
-    from simulator.run.story import open_story
+    from utak.kb.reasoning.query import MAX_ANSWER_ROWS, QueryEngine, QueryLimitError
+    from utak.simulator.run.story import open_story
 
     if options.dump_asp is not None and Path(options.story).is_dir():
         print(
@@ -48,8 +48,8 @@ def execute(options: argparse.Namespace) -> int:
     go_to(story, options.story, options.at)
     step = story.line["step"]
     if options.dump_asp is not None:
-        from simulator.episode.episode import read_episode
-        from simulator.episode.program_dump import dump_episode
+        from utak.simulator.episode.episode import read_episode
+        from utak.simulator.episode.program_dump import dump_episode
 
         episode = read_episode(options.story)
         dump_episode(options.dump_asp, options.story, episode, step, options.kb, options.force)
@@ -74,7 +74,7 @@ def _limit(text: str) -> int:
 
 def go_to(story: "Story", name: str, step: int | None) -> None:
     """Advance to a step, or to the end for None; raise BadInputError when there is no such step."""
-    from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+    from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
 
     while story.line["step"] != step and story.advance():
         pass

@@ -3,9 +3,9 @@
 import argparse
 from typing import Any
 
-from simulator.cli.commands.run import add_settings, settings_of
-from simulator.scenario.untrusted import refuse_links
-from simulator.terminal import exits
+from utak.simulator.cli.commands.run import add_settings, settings_of
+from utak.simulator.scenario.untrusted import refuse_links
+from utak.simulator.terminal import exits
 
 
 def add(parts: Any) -> None:
@@ -18,9 +18,9 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Execute lines of the standard input until it ends or `quit`."""
-    from kb.reasoning.query import QueryEngine
-    from simulator.repl.loop import converse
-    from simulator.run.story import open_story
+    from utak.kb.reasoning.query import QueryEngine
+    from utak.simulator.repl.loop import converse
+    from utak.simulator.run.story import open_story
 
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from simulator.terminal import exits
+from utak.simulator.terminal import exits
 
 
 def add(parts: Any) -> None:
@@ -29,14 +29,14 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Read the episode and show it."""
-    from simulator.replay.output import read_replayable, write_gif, write_page
+    from utak.simulator.replay.output import read_replayable, write_gif, write_page
 
     if options.kb and options.html is None:
         print("utak replay: --kb needs --html: only pages give reasons", file=sys.stderr)
         return exits.USAGE
     episode = read_replayable(options.episode)
     if options.html is not None:
-        from simulator.explaining.questions import rule_paths
+        from utak.simulator.explaining.questions import rule_paths
 
         name = Path(options.episode).stem
         if lacking := write_page(options.html, episode, options.force, rule_paths(options.kb), name):
@@ -44,7 +44,7 @@ def execute(options: argparse.Namespace) -> int:
     elif options.gif is not None:
         write_gif(options.gif, episode, options.force)
     else:
-        from simulator.replay.transcript import transcript
+        from utak.simulator.replay.transcript import transcript
 
         for text in transcript(options.episode, episode):
             sys.stdout.write(text)

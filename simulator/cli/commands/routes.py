@@ -5,15 +5,15 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from simulator.scenario.untrusted import add_untrusted_option, refuse_links
-from simulator.terminal import exits
-from simulator.terminal.numbers import parse_decimal, parse_whole
-from simulator.terminal.printing import as_json
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.simulator.scenario.untrusted import add_untrusted_option, refuse_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import parse_decimal, parse_whole
+from utak.simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
-    from geometry.kernels.arrays import Bools
-    from geometry.routes.route import Route
+    from utak.geometry.kernels.arrays import Bools
+    from utak.geometry.routes.route import Route
 
 MAX_MAP_BYTES = 200_000_000  # bytes of a map file; a convention
 MAX_ROUTES_ASKED = 1000  # the greatest -k; a convention
@@ -51,7 +51,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Find the routes and print them."""
-    from geometry.screen import Screen
+    from utak.geometry.screen import Screen
 
     refuse_links(options, options.map)
     free = _free_squares(options.map)
@@ -64,8 +64,8 @@ def execute(options: argparse.Namespace) -> int:
         hint = "" if top is None else "y is counted from the bottom here"
         raise BadInputError([Problem(options.map, SourceSpan(1, 1, 1), str(error), hint=hint)]) from None
     if options.svg:
-        from geometry.io.svg import draw, place
-        from simulator.episode.output_files import is_svg, write_whole
+        from utak.geometry.io.svg import draw, place
+        from utak.simulator.episode.output_files import is_svg, write_whole
 
         picture = draw(screen, routes, ends=(start, goal), words=lambda point: place(_mirrored(point, top)))
         write_whole(options.svg, picture.encode("utf-8"), is_svg, "SVG picture", options.force)
@@ -75,8 +75,8 @@ def execute(options: argparse.Namespace) -> int:
 
 def _free_squares(name: str) -> "Bools":
     """Return the free squares: those of a map, or those of a scenario's table where nothing stands."""
-    from geometry.io.movingai import MapError, parse_map
-    from simulator.importing.text_file import read_raw, text_source
+    from utak.geometry.io.movingai import MapError, parse_map
+    from utak.simulator.importing.text_file import read_raw, text_source
 
     if Path(name).is_dir():
         return _free_squares_of_scenario(name)
@@ -90,8 +90,8 @@ def _free_squares(name: str) -> "Bools":
 
 def _free_squares_of_scenario(name: str) -> "Bools":
     """Return the squares of a scenario's table that nothing covers."""
-    from geometry.raster.rasterize import squares
-    from simulator.scenario.scenario import read_any_world
+    from utak.geometry.raster.rasterize import squares
+    from utak.simulator.scenario.scenario import read_any_world
 
     world = read_any_world(name)
     blocked = squares(world.verge, world.width, world.height)

@@ -5,22 +5,22 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from simulator.scenario.settings import PATH_CHOICES
-from simulator.scenario.untrusted import add_untrusted_option, refuse_links
-from simulator.terminal import exits
-from simulator.terminal.numbers import MAX_SECONDS, MIN_SECONDS, parse_decimal, parse_whole
-from simulator.terminal.printing import as_json
-from simulator.terminal.streams import escape_controls
+from utak.simulator.scenario.settings import PATH_CHOICES
+from utak.simulator.scenario.untrusted import add_untrusted_option, refuse_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import MAX_SECONDS, MIN_SECONDS, parse_decimal, parse_whole
+from utak.simulator.terminal.printing import as_json
+from utak.simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from simulator.episode.episode import Episode, EpisodeLine
-    from simulator.run.session import Result, Session
-    from simulator.run.time_limit import TimeLimit
-    from simulator.scenario.scenario import Scenario
-    from simulator.scenario.settings import Settings
-    from simulator.terminal.progress import StepProgress
+    from utak.simulator.episode.episode import Episode, EpisodeLine
+    from utak.simulator.run.session import Result, Session
+    from utak.simulator.run.time_limit import TimeLimit
+    from utak.simulator.scenario.scenario import Scenario
+    from utak.simulator.scenario.settings import Settings
+    from utak.simulator.terminal.progress import StepProgress
 
     LineListener = Callable[[EpisodeLine], None]
 
@@ -84,9 +84,9 @@ def add_robot_settings(part: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Run the robot and print the result."""
-    from simulator.episode.episode import STANDARD_OUTPUT
-    from simulator.scenario.scenario import read_scenario
-    from simulator.terminal.progress import StepProgress
+    from utak.simulator.episode.episode import STANDARD_OUTPUT
+    from utak.simulator.scenario.scenario import read_scenario
+    from utak.simulator.terminal.progress import StepProgress
 
     wrong = _wrong_usage(options)
     if wrong:
@@ -95,7 +95,7 @@ def execute(options: argparse.Namespace) -> int:
     refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
     if options.html is not None:
-        from simulator.replay.output import check_page_path
+        from utak.simulator.replay.output import check_page_path
 
         check_page_path(options.html, options.force)
     lines: list[EpisodeLine] = []
@@ -103,8 +103,8 @@ def execute(options: argparse.Namespace) -> int:
     with StepProgress(settings_of(options).max_steps) as progress:
         result = run(options, scenario, _progress_printer(options.watch, progress), _listener(options, lines))
     if options.html is not None:
-        from simulator.explaining.questions import rule_paths
-        from simulator.replay.output import write_page
+        from utak.simulator.explaining.questions import rule_paths
+        from utak.simulator.replay.output import write_page
 
         rule_files = rule_paths((*options.kb, *options.from_kb))
         write_page(options.html, _recorded(lines), options.force, rule_files, Path(options.scenario).resolve().name)
@@ -114,7 +114,7 @@ def execute(options: argparse.Namespace) -> int:
 
 def _wrong_usage(options: argparse.Namespace) -> str:
     """Return what is wrong with the combination of options; '' for nothing."""
-    from simulator.episode.episode import STANDARD_OUTPUT
+    from utak.simulator.episode.episode import STANDARD_OUTPUT
 
     if options.resume and options.log in (None, STANDARD_OUTPUT):
         return "--resume needs --log EP.jsonl"
@@ -139,10 +139,10 @@ def _run(
     options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]", listen: "LineListener"
 ) -> "Result":
     """Run from the start, or go on from the episode that --log names; return the result."""
-    from simulator.episode.episode import EpisodeLog
-    from simulator.run.forking import repeat_stages, stages_until
-    from simulator.run.robots import make_robot
-    from simulator.run.session import Session
+    from utak.simulator.episode.episode import EpisodeLog
+    from utak.simulator.run.forking import repeat_stages, stages_until
+    from utak.simulator.run.robots import make_robot
+    from utak.simulator.run.session import Session
 
     head = _recorded_header(options) or {}
     settings = settings_of(options, head.get("options"))
@@ -158,9 +158,9 @@ def _run_fork(
     options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]", listen: "LineListener"
 ) -> "Result":
     """Repeat the episode of --from up to --at, go on with the options given now, and return the result."""
-    from simulator.episode.episode import EpisodeLog, read_episode
-    from simulator.run.forking import options_at, repeat_until
-    from simulator.run.robots import make_robot
+    from utak.simulator.episode.episode import EpisodeLog, read_episode
+    from utak.simulator.run.forking import options_at, repeat_until
+    from utak.simulator.run.robots import make_robot
 
     episode = read_episode(options.origin)
     settings = settings_of(options, options_at(episode.header, options.at))
@@ -173,7 +173,7 @@ def _run_fork(
 
 def _time_limit(options: argparse.Namespace) -> "TimeLimit | None":
     """Return the limit of time that --seconds states; None without it."""
-    from simulator.run.time_limit import TimeLimit
+    from utak.simulator.run.time_limit import TimeLimit
 
     return None if options.seconds is None else TimeLimit(options.seconds)
 
@@ -182,7 +182,7 @@ def _listener(options: argparse.Namespace, lines: "list[EpisodeLine]") -> "LineL
     """Return the function that takes each line of the episode, for --dump-asp and --html."""
     listeners: list[LineListener] = []
     if options.dump_asp is not None:
-        from simulator.episode.program_dump import ProgramDump
+        from utak.simulator.episode.program_dump import ProgramDump
 
         listeners.append(ProgramDump(options.dump_asp, "the run", [*options.kb, *options.from_kb], options.force).add)
     if options.html is not None:
@@ -200,7 +200,7 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
     """Return the settings of the command line; where it is silent, those of a recorded episode."""
     from dataclasses import replace
 
-    from simulator.scenario.settings import Settings, kb_files_named
+    from utak.simulator.scenario.settings import Settings, kb_files_named
 
     kept = {name: value for name, value in (recorded or {}).items() if name in SETTINGS_OPTIONS}
     return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given_settings(options)})
@@ -220,7 +220,7 @@ def exit_code(result: "Result") -> int:
 
 def _recorded_header(options: argparse.Namespace) -> dict[str, Any] | None:
     """Return the header of the episode that is to be resumed; None when there is none."""
-    from simulator.episode.episode import lines_to_resume, read_episode
+    from utak.simulator.episode.episode import lines_to_resume, read_episode
 
     if not options.resume or not Path(options.log).exists() or not lines_to_resume(options.log):
         return None
@@ -245,7 +245,7 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
 
 def _progress_printer(watch: bool, progress: "StepProgress") -> "Callable[[Session], None]":
     """Return what prints after each step: nothing, one line on a terminal, or the table as a picture."""
-    from simulator.replay.watching import TableWatch, step_in_words
+    from utak.simulator.replay.watching import TableWatch, step_in_words
 
     tell = TableWatch().tell if watch else lambda session: print(step_in_words(session.line), file=sys.stderr)
 
@@ -262,7 +262,7 @@ def _recorded(lines: "list[EpisodeLine]") -> "Episode":
     """Return a run as the episode that `--log` would have, from all of its lines."""
     import json
 
-    from simulator.episode.episode import Episode, encode
+    from utak.simulator.episode.episode import Episode, encode
 
     first, *steps, last = (json.loads(encode(line)) for line in lines)
     return Episode(first, tuple(steps), last["result"])

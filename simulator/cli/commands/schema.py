@@ -4,7 +4,7 @@ import argparse
 import json
 from typing import Any
 
-from simulator.terminal import exits
+from utak.simulator.terminal import exits
 
 SCHEMA_NAMES = (
     *("episode", "header", "step", "end"),
@@ -27,7 +27,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Print the schema, draft 2020-12."""
-    from simulator.episode.schema import EPISODE_LINES, document
+    from utak.simulator.episode.schema import EPISODE_LINES, document
 
     names = EPISODE_LINES if options.name == "episode" else (options.name,)
     title = "a line of an episode of utak" if options.name == "episode" else f"utak: {options.name}"

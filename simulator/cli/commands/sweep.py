@@ -6,16 +6,16 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli.commands.run import add_robot_settings
-from simulator.scenario.untrusted import refuse_links
-from simulator.terminal import exits
-from simulator.terminal.numbers import MAX_SECONDS, MIN_SECONDS, parse_decimal, parse_whole
-from simulator.terminal.printing import as_json
+from utak.simulator.cli.commands.run import add_robot_settings
+from utak.simulator.scenario.untrusted import refuse_links
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import MAX_SECONDS, MIN_SECONDS, parse_decimal, parse_whole
+from utak.simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
-    from simulator.sweep.executors.tasks import Executor, TaskOutcome
-    from simulator.sweep.plan import SweepPlan, SweepRun
-    from simulator.sweep.results import ResultRow
+    from utak.simulator.sweep.executors.tasks import Executor, TaskOutcome
+    from utak.simulator.sweep.plan import SweepPlan, SweepRun
+    from utak.simulator.sweep.results import ResultRow
 
 MAX_SWEEP_JOBS = 1024  # the greatest --jobs; a convention
 # The end of the help text.
@@ -55,10 +55,10 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Carry out the sweep, print the summary and return the exit code."""
-    from simulator.run.interrupts import end_at_request
-    from simulator.sweep.carrying_out import carry_out_sweep, form_of
-    from simulator.sweep.plan import MAX_RUNS
-    from simulator.sweep.results import STDOUT_NAME, open_results
+    from utak.simulator.run.interrupts import end_at_request
+    from utak.simulator.sweep.carrying_out import carry_out_sweep, form_of
+    from utak.simulator.sweep.plan import MAX_RUNS
+    from utak.simulator.sweep.results import STDOUT_NAME, open_results
 
     if options.json and options.output == STDOUT_NAME:
         return _usage("--json and -o - both want the standard output")
@@ -88,13 +88,13 @@ def execute(options: argparse.Namespace) -> int:
 
 def _plan(options: argparse.Namespace) -> "tuple[SweepPlan, bool]":
     """Return the plan of the command line, and whether a task moves objects; read and check all files."""
-    from kb.language.source_text import read_source
-    from planner.stages import stages
-    from simulator.run.trial import scenarios_in
-    from simulator.scenario.scenario import read_scenario
-    from simulator.scenario.settings import Settings, kb_files_named
-    from simulator.sweep.contents import names_of, read_contents
-    from simulator.sweep.plan import SweepPlan
+    from utak.kb.language.source_text import read_source
+    from utak.planner.stages import stages
+    from utak.simulator.run.trial import scenarios_in
+    from utak.simulator.scenario.scenario import read_scenario
+    from utak.simulator.scenario.settings import Settings, kb_files_named
+    from utak.simulator.sweep.contents import names_of, read_contents
+    from utak.simulator.sweep.plan import SweepPlan
 
     folders, carrying = {}, False
     for named in options.scenarios:
@@ -115,16 +115,16 @@ def _executor(options: argparse.Namespace, paths: str, carrying: bool) -> "Execu
     """Return what carries out the runs. Kernels are compiled here first, where worker processes run here."""
     from functools import partial
 
-    from simulator.run.warming import warm
-    from simulator.sweep.executors.tasks import WorkerTask
-    from simulator.sweep.plan import PREPARATION_FUNCTION
+    from utak.simulator.run.warming import warm
+    from utak.simulator.sweep.executors.tasks import WorkerTask
+    from utak.simulator.sweep.plan import PREPARATION_FUNCTION
 
     preparation = WorkerTask(PREPARATION_FUNCTION, {"carrying": carrying, "paths": paths})
     if options.dask is not None:
-        from simulator.sweep.executors.cluster import run_on_dask
+        from utak.simulator.sweep.executors.cluster import run_on_dask
 
         return partial(run_on_dask, address=options.dask, preparation=preparation)
-    from simulator.sweep.executors.processes import run_in_processes
+    from utak.simulator.sweep.executors.processes import run_in_processes
 
     warm(carrying, paths)
     return partial(run_in_processes, jobs=options.jobs or usable_processors(), preparation=preparation)
@@ -132,7 +132,7 @@ def _executor(options: argparse.Namespace, paths: str, carrying: bool) -> "Execu
 
 def _check_picture(options: argparse.Namespace) -> None:
     """Raise CannotOpenError when the picture could not be written at the end."""
-    from simulator.episode.output_files import check_path, is_svg
+    from utak.simulator.episode.output_files import check_path, is_svg
 
     if options.svg:
         check_path(options.svg, is_svg, "SVG picture", options.force)
@@ -151,7 +151,7 @@ class _Watch:
     def __init__(self, left: "list[SweepRun]", known: int, times: "_Times") -> None:
         from collections import Counter
 
-        from simulator.terminal.progress import Progress
+        from utak.simulator.terminal.progress import Progress
 
         self._times = times
         self._progress = Progress(Counter((run.scenario, run.noise) for run in left), "runs")
@@ -166,8 +166,8 @@ class _Watch:
 
 def is_times(head: bytes) -> bool:
     """Return whether a file with these first bytes is one of `--times`."""
-    from simulator.sweep.plan import SweepRun
-    from simulator.sweep.results import holds_rows
+    from utak.simulator.sweep.plan import SweepRun
+    from utak.simulator.sweep.results import holds_rows
 
     return holds_rows(head, (*SweepRun._fields, "seconds"))
 
@@ -176,7 +176,7 @@ class _Times:
     """The file of `--times`: the wall-clock seconds of each run that is carried out now, in the order of their ends."""
 
     def __init__(self, path: str | None, force: bool) -> None:
-        from simulator.episode.output_files import GrowingFile
+        from utak.simulator.episode.output_files import GrowingFile
 
         self._stream = None if path is None else GrowingFile(path, is_times, "file of times", force)
 
@@ -196,13 +196,13 @@ class _Times:
 
 def _report(options: argparse.Namespace, plan: "SweepPlan", rows: "list[ResultRow]") -> None:
     """Print the summary of the rows, and draw it."""
-    from simulator.episode.output_files import is_svg, write_whole
-    from simulator.sweep.results import STDOUT_NAME
-    from simulator.sweep.summary import counts_of, table_of, total_of
+    from utak.simulator.episode.output_files import is_svg, write_whole
+    from utak.simulator.sweep.results import STDOUT_NAME
+    from utak.simulator.sweep.summary import counts_of, table_of, total_of
 
     counts = counts_of(rows)
     if options.svg:
-        from simulator.sweep.picture import sweep_picture
+        from utak.simulator.sweep.picture import sweep_picture
 
         write_whole(options.svg, sweep_picture(counts).encode("utf-8"), is_svg, "SVG picture", options.force)
     if options.json:
@@ -226,7 +226,7 @@ def _named_run(row: "ResultRow") -> "ResultRow":
 
 def _exit_code(rows: "list[ResultRow]") -> int:
     """Return the exit code: 0 when every run has a result, whatever it is."""
-    from simulator.sweep.executors.tasks import RAISED
+    from utak.simulator.sweep.executors.tasks import RAISED
 
     hows = {row["failed"]["how"] for row in rows if row["failed"] is not None}
     return exits.worst(exits.OUR_BUG if how == RAISED else exits.LIMIT for how in hows)
@@ -240,7 +240,7 @@ def _usage(problem: str) -> int:
 
 def _seeds(text: str) -> tuple[tuple[int, int], ...]:
     """Return the ranges for `--seeds`."""
-    from simulator.sweep.plan import parse_seeds
+    from utak.simulator.sweep.plan import parse_seeds
 
     try:
         return parse_seeds(text)

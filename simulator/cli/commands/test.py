@@ -5,16 +5,16 @@ import sys
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli.commands.run import add_settings, given_settings
-from simulator.terminal import exits
-from simulator.terminal.numbers import parse_whole
-from simulator.terminal.printing import as_json
+from utak.simulator.cli.commands.run import add_settings, given_settings
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import parse_whole
+from utak.simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from simulator.episode.output_files import Kind
-    from simulator.testing.record import TrialRecord
+    from utak.simulator.episode.output_files import Kind
+    from utak.simulator.testing.record import TrialRecord
 
 MAX_JOBS = 256  # scenarios at once; a convention
 
@@ -36,11 +36,11 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Run every scenario, print one line each and the number that passed; return the most severe exit code."""
-    from simulator.episode.output_files import check_path, write_whole
-    from simulator.scenario.settings import kb_files_named
-    from simulator.testing.record import Wish
-    from simulator.testing.suite import find_scenarios, try_all
-    from simulator.testing.wording import as_object, outcome_line, summary_line
+    from utak.simulator.episode.output_files import check_path, write_whole
+    from utak.simulator.scenario.settings import kb_files_named
+    from utak.simulator.testing.record import Wish
+    from utak.simulator.testing.suite import find_scenarios, try_all
+    from utak.simulator.testing.wording import as_object, outcome_line, summary_line
 
     kb_files = kb_files_named(options.kb)
     for path, _, kind, name in _files(options):  # before anything is run
@@ -65,9 +65,9 @@ def execute(options: argparse.Namespace) -> int:
 
 def _files(options: argparse.Namespace) -> "Iterator[tuple[str, Callable[[Sequence[TrialRecord]], str], Kind, str]]":
     """Yield each file that is to be written: its path, what makes its text, and which files it may overwrite."""
-    from simulator.episode.output_files import is_junit
-    from simulator.testing.grades import as_csv, is_csv
-    from simulator.testing.junit import as_junit
+    from utak.simulator.episode.output_files import is_junit
+    from utak.simulator.testing.grades import as_csv, is_csv
+    from utak.simulator.testing.junit import as_junit
 
     if options.junit is not None:
         yield options.junit, as_junit, is_junit, "JUnit XML"

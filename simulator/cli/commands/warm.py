@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from simulator.terminal import exits
+from utak.simulator.terminal import exits
 
 
 def add(parts: Any) -> None:
@@ -14,8 +14,8 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Compile all kernels and print their number."""
-    from geometry.kernels.jit import kernel_status
-    from simulator.run.warming import count_cached_kernels, warm_all
+    from utak.geometry.kernels.jit import kernel_status
+    from utak.simulator.run.warming import count_cached_kernels, warm_all
 
     warm_all()
     count, cache_is_writable = kernel_status()

@@ -8,16 +8,15 @@ from typing import Any
 
 import shapely
 from shapely import affinity
-
-from geometry.cspace.plan_motion import Inside, plan_motion
-from geometry.motion.se2 import Pose
-from kb.language.terms import Text
-from kb.language.wkt import parse_wkt
-from simulator.explaining.fixing.gaps import Gap, floor_of, solid_of
-from simulator.scenario.expectation import EXPECTATION_TOLERANCE
-from simulator.scenario.scenario import Scenario
-from simulator.world.physics import table_edge
-from simulator.world.world import Thing, World
+from utak.geometry.cspace.plan_motion import Inside, plan_motion
+from utak.geometry.motion.se2 import Pose
+from utak.kb.language.terms import Text
+from utak.kb.language.wkt import parse_wkt
+from utak.simulator.explaining.fixing.gaps import Gap, floor_of, solid_of
+from utak.simulator.scenario.expectation import EXPECTATION_TOLERANCE
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.world.physics import table_edge
+from utak.simulator.world.world import Thing, World
 
 GAP_MARGIN = 1e-6  # squares by which a gap is closed on paper; below what the physics resolves
 # Relative resolution and cells of a proof: enough for widths that differ by a step; what is not decided is run instead.

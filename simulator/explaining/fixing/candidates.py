@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-
-from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import components
-from planner.stages import stages
-from simulator.explaining.fixing.bounds import cannot_pass
-from simulator.explaining.fixing.changes import Away, Dropped, Led, Wider, dropped_goals
-from simulator.explaining.fixing.gaps import (
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.raster.components import components
+from utak.planner.stages import stages
+from utak.simulator.explaining.fixing.bounds import cannot_pass
+from utak.simulator.explaining.fixing.changes import Away, Dropped, Led, Wider, dropped_goals
+from utak.simulator.explaining.fixing.gaps import (
     GAP_LENGTH_TOLERANCE,
     WIDTH_STEP,
     Gap,
@@ -21,10 +20,10 @@ from simulator.explaining.fixing.gaps import (
     passages_of,
     widened,
 )
-from simulator.explaining.fixing.leading import free_squares
-from simulator.run.session import Result
-from simulator.scenario.scenario import Scenario
-from simulator.world.world import Thing, World
+from utak.simulator.explaining.fixing.leading import free_squares
+from utak.simulator.run.session import Result
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.world.world import Thing, World
 
 WALKER_WIDTH = 4.0  # squares; a walking robot passes any doorway so wide: one square, and walls anywhere in 2 others
 CARRYING_MARGIN = 3.0  # squares that a doorway may be wider than what is carried, and still be called too narrow

@@ -6,17 +6,17 @@ A change is small and alone; several together are a tuple of changes. Places are
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from geometry.kernels.arrays import XY
-from kb.language.diagnostics import BadInputError
-from kb.language.terms import Fact, Symbol
-from kb.language.vocabulary import CONSTRAINT_GOALS
-from kb.task.task import WRAPPING_GOALS, Task
-from simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide, widened
-from simulator.explaining.fixing.recorded import facts_of, start_text, task_from_texts
-from simulator.scenario.expectation import about_things, should_fail
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
-from simulator.world.world import World
+from utak.geometry.kernels.arrays import XY
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.terms import Fact, Symbol
+from utak.kb.language.vocabulary import CONSTRAINT_GOALS
+from utak.kb.task.task import WRAPPING_GOALS, Task
+from utak.simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide, widened
+from utak.simulator.explaining.fixing.recorded import facts_of, start_text, task_from_texts
+from utak.simulator.scenario.expectation import about_things, should_fail
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.world.world import World
 
 PLACE_EXPECTATIONS = ("inside", "near", "visits", "circles")  # what a thing or Utak must attain
 

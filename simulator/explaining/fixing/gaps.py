@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity
-
-from geometry import Screen
-from geometry.kernels.arrays import XY, Bools, Labels
-from geometry.raster.components import components
-from geometry.raster.rasterize import squares
-from simulator.world.world import World
+from utak.geometry import Screen
+from utak.geometry.kernels.arrays import XY, Bools, Labels
+from utak.geometry.raster.components import components
+from utak.geometry.raster.rasterize import squares
+from utak.simulator.world.world import World
 
 WIDTH_STEP = 0.25  # squares; widths are tried in these steps; a convention
 FINE_CELLS = 4  # cells along a square, in worlds whose walls do not lie on whole squares; a convention

@@ -4,14 +4,13 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-
-from geometry import Screen
-from geometry.kernels.arrays import XY, Bools
-from geometry.motion.se2 import direction
-from geometry.raster.rasterize import squares
-from kb.body import Body, Command, Move
-from kb.task.task import Task
-from simulator.run.session import (
+from utak.geometry import Screen
+from utak.geometry.kernels.arrays import XY, Bools
+from utak.geometry.motion.se2 import direction
+from utak.geometry.raster.rasterize import squares
+from utak.kb.body import Body, Command, Move
+from utak.kb.task.task import Task
+from utak.simulator.run.session import (
     FollowingRobotProtocol,
     RobotMaker,
     RobotProtocol,
@@ -19,9 +18,9 @@ from simulator.run.session import (
     StepReportProtocol,
     VerdictProtocol,
 )
-from simulator.scenario.settings import Settings
-from simulator.world.physics import Tabletop
-from simulator.world.world import World
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import World
 
 ARRIVAL_DISTANCE = 0.75  # squares; a led robot that is so near to a place has arrived; less than a square's diagonal
 MAX_LEADING_COMMANDS = 40  # commands; where noise or a thing in the way takes more, leading is given up; a convention

@@ -4,14 +4,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from simulator.episode.episode import EpisodeLog
-from simulator.explaining.fixing.bounds import refutation
-from simulator.explaining.fixing.changes import Variant, WorldChange, variant_of
-from simulator.explaining.fixing.leading import Leader
-from simulator.run.robots import make_robot
-from simulator.run.session import Result, RobotMaker, Session
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.explaining.fixing.bounds import refutation
+from utak.simulator.explaining.fixing.changes import Variant, WorldChange, variant_of
+from utak.simulator.explaining.fixing.leading import Leader
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, RobotMaker, Session
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
 
 DEFAULT_RUNS = 40  # runs; a convention: some minutes
 PROOFS_PER_RUN = 5  # proofs of geometry that are allowed for each allowed run, which takes longer; a convention

@@ -5,17 +5,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import shapely
-
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.language.reader import facts_from_text, parse_facts
-from kb.language.source_text import read_source, source_from_bytes
-from kb.language.terms import Fact
-from kb.language.vocabulary import EXPECTATION_VOCABULARY, GOAL_VOCABULARY, START_VOCABULARY, check_facts
-from kb.task.task import CERTAIN_CONFIDENCE, Task, task_of
-from simulator.episode.episode import Episode, EpisodeLine
-from simulator.episode.record import recorded_world
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings, kb_files_named
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.reader import facts_from_text, parse_facts
+from utak.kb.language.source_text import read_source, source_from_bytes
+from utak.kb.language.terms import Fact
+from utak.kb.language.vocabulary import EXPECTATION_VOCABULARY, GOAL_VOCABULARY, START_VOCABULARY, check_facts
+from utak.kb.task.task import CERTAIN_CONFIDENCE, Task, task_of
+from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.episode.record import recorded_world
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings, kb_files_named
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,14 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-
-from geometry.kernels.arrays import XY
-from geometry.motion.se2 import direction
-from kb.evidence.reason import Depth
-from simulator.explaining.fixing.changes import Away, Dropped, Led, MoreCommands, Wider, WorldChange
-from simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide
-from simulator.explaining.fixing.proving import Outcome
-from simulator.explaining.fixing.search import Fix, FixReport, WorldChanges
-from simulator.world.world import World
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.motion.se2 import direction
+from utak.kb.evidence.reason import Depth
+from utak.simulator.explaining.fixing.changes import Away, Dropped, Led, MoreCommands, Wider, WorldChange
+from utak.simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide
+from utak.simulator.explaining.fixing.proving import Outcome
+from utak.simulator.explaining.fixing.search import Fix, FixReport, WorldChanges
+from utak.simulator.world.world import World
 
 COMPASS_WORDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
 FRAME_NOTE = (

@@ -10,19 +10,19 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 
-from simulator.explaining.fixing.candidates import (
+from utak.simulator.explaining.fixing.candidates import (
     Candidates,
     GapRange,
     candidates_of,
     carried_things,
     is_out_of_commands,
 )
-from simulator.explaining.fixing.changes import Dropped, MoreCommands, Wider, WorldChange
-from simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
-from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, VariantProver
-from simulator.explaining.fixing.recorded import RecordedRun
-from simulator.run.robots import make_robot
-from simulator.run.session import Result, RobotMaker
+from utak.simulator.explaining.fixing.changes import Dropped, MoreCommands, Wider, WorldChange
+from utak.simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
+from utak.simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, VariantProver
+from utak.simulator.explaining.fixing.recorded import RecordedRun
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, RobotMaker
 
 MORE_COMMANDS_FACTOR = 4  # so many times the allowed commands are tried when they did not suffice; a convention
 MIN_MORE_COMMANDS = 200  # commands; at least so many are added then: the default of `utak run`

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from simulator.explaining.fixing.recorded import start_text
-from simulator.scenario.folder_writer import whole_folder
-from simulator.scenario.scenario import Scenario, read_scenario
-from simulator.world.world import World
+from utak.simulator.explaining.fixing.recorded import start_text
+from utak.simulator.scenario.folder_writer import whole_folder
+from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.world.world import World
 
 
 def write_scenario(scenario: Scenario, folder: Path | str) -> None:

@@ -14,10 +14,10 @@ from contextlib import suppress
 from typing import Any
 from uuid import uuid4
 
-from kb.language.diagnostics import CannotOpenError
-from simulator.sweep.executors.cluster_worker import MISMATCH, end_processes, run_task
-from simulator.sweep.executors.code_identity import code_identity
-from simulator.sweep.executors.tasks import DIED, TaskOutcome, WorkerTask
+from utak.kb.language.diagnostics import CannotOpenError
+from utak.simulator.sweep.executors.cluster_worker import MISMATCH, end_processes, run_task
+from utak.simulator.sweep.executors.code_identity import code_identity
+from utak.simulator.sweep.executors.tasks import DIED, TaskOutcome, WorkerTask
 
 MAX_CONNECTING_SECONDS = 10.0  # seconds until a scheduler must answer; a convention
 MAX_WORKERLESS_SECONDS = 60.0  # seconds without any worker after which a sweep stops; a convention

@@ -7,9 +7,9 @@ state of this module lives in the Dask worker; each sweep has its own processes 
 import threading
 from typing import Any
 
-from simulator.sweep.executors.code_identity import code_identity, difference
-from simulator.sweep.executors.task_process import TaskProcess
-from simulator.sweep.executors.tasks import WorkerTask
+from utak.simulator.sweep.executors.code_identity import code_identity, difference
+from utak.simulator.sweep.executors.task_process import TaskProcess
+from utak.simulator.sweep.executors.tasks import WorkerTask
 
 IDLE_SECONDS = 60.0  # after which a worker process ends that gets no more tasks, as when the client died; a convention
 MISMATCH = "mismatch"  # the key of an answer that refuses the task

@@ -3,11 +3,12 @@
 import hashlib
 import re
 import sys
+from collections.abc import Sequence
 from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-from utak_command import DEPENDENCIES, PROJECT_FOLDER
+from utak.launcher import DEPENDENCIES, PROJECT_FOLDER, folder_of
 
 DECIDING_PACKAGES = ("geometry", "kb", "planner", "simulator")  # all of ours that take part in a run
 DIGEST_LENGTH = 16  # hexadecimal digits: two states of the code differ in them for all that is likely; a convention
@@ -18,7 +19,7 @@ def code_identity() -> dict[str, str]:
     """Return the versions by name: `utak`, `code` (a digest of its programs and encodings), `python`, and libraries."""
     return {
         "utak": utak_version(),
-        "code": code_digest(Path(PROJECT_FOLDER)),
+        "code": code_digest([Path(folder_of(name)) for name in DECIDING_PACKAGES]),
         "python": ".".join(map(str, sys.version_info[:2])),
         **{name: metadata.version(name) for name in DEPENDENCIES},
     }
@@ -37,14 +38,14 @@ def utak_version() -> str:
         return "?"
 
 
-def code_digest(folder: Path) -> str:
-    """Return a digest of all programs and encodings of the packages in a folder, whatever its place."""
+def code_digest(folders: Sequence[Path]) -> str:
+    """Return a digest of all programs and encodings in some packages' folders, wherever these lie."""
     digest = hashlib.sha256()
-    for package in DECIDING_PACKAGES:
-        for path in sorted((folder / package).rglob("*")):
+    for folder in folders:
+        for path in sorted(folder.rglob("*")):
             if path.suffix in (".py", ".lp") and path.is_file():
                 contents = path.read_bytes().replace(b"\r\n", b"\n")
-                digest.update(f"{path.relative_to(folder).as_posix()} {len(contents)}\n".encode())
+                digest.update(f"{path.relative_to(folder.parent).as_posix()} {len(contents)}\n".encode())
                 digest.update(contents)
     return digest.hexdigest()[:DIGEST_LENGTH]
 

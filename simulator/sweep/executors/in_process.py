@@ -2,7 +2,7 @@
 
 from collections.abc import Generator, Sequence
 
-from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask, carry_out
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask, carry_out
 
 
 def run_in_this_process(tasks: Sequence[WorkerTask]) -> Generator[tuple[int, TaskOutcome], None, None]:

@@ -5,8 +5,8 @@ import threading
 from collections.abc import Generator, Sequence
 from typing import NamedTuple
 
-from simulator.sweep.executors.task_process import TaskProcess
-from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
+from utak.simulator.sweep.executors.task_process import TaskProcess
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 MAX_JOINING_SECONDS = 10.0  # seconds until a thread whose process was killed has ended; a convention
 

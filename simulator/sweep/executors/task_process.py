@@ -10,9 +10,10 @@ from contextlib import suppress
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
-from simulator.sweep.executors.worker import READY
-from utak_command import isolated_command
+from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
+from utak.simulator.sweep.executors.worker import READY
+
+from utak.launcher import isolated_command
 
 MAX_WORKER_START_SECONDS = 60.0  # seconds of wall-clock time until a worker process must be ready; a convention
 MAX_PREPARATION_SECONDS = 900.0  # seconds for its preparation, which may compile all kernels; a convention
@@ -76,7 +77,7 @@ class TaskProcess:
     def _start(self) -> "subprocess.Popen[bytes] | None":
         """Return a new process that is ready and prepared; None when this handle was closed meanwhile."""
         process = subprocess.Popen(
-            isolated_command("simulator.sweep.executors.worker", f"{self._idle_seconds:g}"),
+            isolated_command("utak.simulator.sweep.executors.worker", f"{self._idle_seconds:g}"),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

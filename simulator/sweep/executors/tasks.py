@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 
 # How a task can fail: it took too long, its process ended, or it raised an exception.
 TOO_LONG, DIED, RAISED = "time", "died", "error"

@@ -10,8 +10,8 @@ import sys
 import threading
 from typing import Any
 
-from kb.language.operating_system import end_with_parent, read_lines_from_parent
-from simulator.sweep.executors.tasks import WorkerTask, carry_out
+from utak.kb.language.operating_system import end_with_parent, read_lines_from_parent
+from utak.simulator.sweep.executors.tasks import WorkerTask, carry_out
 
 READY = b"ready\n"  # the first line that a worker writes
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from utak.geometry.pathfinders.visibility_graph import visibility_path
 
 from benchmarks.engine.sightlines import Sightlines
-from geometry.pathfinders.visibility_graph import visibility_path
 from tests.geometry import oracles
 from tests.geometry.routes.test_routes import trips
 

@@ -11,6 +11,10 @@ import pytest
 from shapely import LineString, box, union_all
 from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
+from utak.geometry.cspace.plan_motion import plan_motion
+from utak.geometry.motion.se2 import Pose
+from utak.simulator.scenario.expectation import Snapshot, unmet
+from utak.simulator.scenario.scenario import read_scenario
 
 from benchmarks.claims.asked import ASKED_KINDS
 from benchmarks.worlds.odd import constraints, openings, plugged, touching
@@ -19,10 +23,6 @@ from benchmarks.worlds.odd.kinds import odd_world
 from benchmarks.worlds.odd.lying import own_square
 from benchmarks.worlds.odd.tasks import NO, NOT_KNOWN, ODD_GOALS, YES, OddWorld
 from benchmarks.worlds.scenes import write
-from geometry.cspace.plan_motion import plan_motion
-from geometry.motion.se2 import Pose
-from simulator.scenario.expectation import Snapshot, unmet
-from simulator.scenario.scenario import read_scenario
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -5,17 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from utak.kb.mapping.occupancy import FREE
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.harness.knowing import knowing
 from benchmarks.harness.trial import Conditions, run_trial
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.plain import PLAIN_GOALS
 from benchmarks.worlds.scenes import write
-from kb.mapping.occupancy import FREE
-from simulator.episode.episode import EpisodeLog
-from simulator.run.session import Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
 from tests.tables import few
 
 

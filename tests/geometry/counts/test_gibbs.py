@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-
-from geometry.counts.gibbs import (
+from utak.geometry.counts.gibbs import (
     CORNER_COST,
     COUNT_ERROR_COST,
     DRAWN,
@@ -21,7 +20,7 @@ from geometry.counts.gibbs import (
     costs,
     pictures,
 )
-from geometry.counts.moments import blobs
+from utak.geometry.counts.moments import blobs
 
 
 def counts_of(truth: np.ndarray, side: int, shift: int = 0) -> Counts:

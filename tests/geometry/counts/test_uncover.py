@@ -3,8 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.counts.uncover import remove_covered_squares
+from utak.geometry.counts.uncover import remove_covered_squares
 
 SIDE = 5
 masks = st.lists(st.booleans(), min_size=SIDE * SIDE, max_size=SIDE * SIDE).map(

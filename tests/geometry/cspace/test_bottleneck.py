@@ -8,8 +8,7 @@ import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
-
-from geometry.cspace.bottleneck import (
+from utak.geometry.cspace.bottleneck import (
     WIDENING_CELLS,
     WIDTH_PRECISION,
     Bottleneck,
@@ -17,10 +16,11 @@ from geometry.cspace.bottleneck import (
     missing_width,
     status_when_wide,
 )
-from geometry.cspace.plan_motion import plan_motion
-from geometry.manipulation.goals import Inside
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Pose
+from utak.geometry.cspace.plan_motion import plan_motion
+from utak.geometry.manipulation.goals import Inside
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Pose
+
 from tests.tables import few
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])

@@ -7,8 +7,7 @@ import networkx as nx
 import numpy as np
 import pytest
 from shapely import box
-
-from geometry.cspace.cell_tree import (
+from utak.geometry.cspace.cell_tree import (
     ROOT_UNITS,
     CellTree,
     is_splittable,
@@ -17,10 +16,10 @@ from geometry.cspace.cell_tree import (
     next_link_to_leaf,
     split_cell,
 )
-from geometry.cspace.channel import find_channel, new_channel_search
-from geometry.motion.body import new_moving_body
-from geometry.motion.cell_clearance import CELL_BLOCKED
-from geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.cspace.channel import find_channel, new_channel_search
+from utak.geometry.motion.body import new_moving_body
+from utak.geometry.motion.cell_clearance import CELL_BLOCKED
+from utak.geometry.motion.obstacle_field import ObstacleField
 
 SHAPE = box(-2, -0.5, 2, 0.5)
 WALLS = box(-1, -1, 11, 11).difference(box(0, 0, 10, 10)).union(box(4.5, 0, 5.5, 7.5))

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity, box
-
-from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Pose, Rotate
+from utak.geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Pose, Rotate
 
 BRICK = box(-3, -1, 3, 1)
 

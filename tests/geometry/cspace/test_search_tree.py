@@ -3,8 +3,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-
-from geometry.cspace.search_tree import add_cell, cut_off, new_search_tree, set_parent, sort_cells
+from utak.geometry.cspace.search_tree import add_cell, cut_off, new_search_tree, set_parent, sort_cells
 
 CAPACITY = 12
 steps = st.lists(st.tuples(st.booleans(), st.integers(0, CAPACITY - 1), st.integers(0, CAPACITY - 1)), max_size=40)

@@ -3,8 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.io.movingai import MapError, parse_map
+from utak.geometry.io.movingai import MapError, parse_map
 
 ROWS = ["@@@@@@", "@....@", "@.TW.@", "@....@", "@@@@@@"]
 GOOD = "\n".join(["type octile", "height 5", "width 6", "map", *ROWS]) + "\n"

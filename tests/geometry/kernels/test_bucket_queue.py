@@ -6,9 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-
-from geometry.kernels.bucket_queue import BUCKETS, new_queue, put, take
-from geometry.motion.obstacle_field import PIXEL_DIAGONAL_COST, PIXEL_STEP_COST, TIGHT_PIXEL_FACTOR, disc_path_costs
+from utak.geometry.kernels.bucket_queue import BUCKETS, new_queue, put, take
+from utak.geometry.motion.obstacle_field import (
+    PIXEL_DIAGONAL_COST,
+    PIXEL_STEP_COST,
+    TIGHT_PIXEL_FACTOR,
+    disc_path_costs,
+)
 
 
 @settings(max_examples=30, deadline=None, derandomize=True)

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-import geometry
-from geometry.kernels.jit import compiled
+import utak.geometry
+from utak.geometry.kernels.jit import compiled
 
 
 @compiled
@@ -38,7 +37,7 @@ def test_kernels_do_not_import_scipy_but_other_code_can() -> None:
     pytest.importorskip("scipy")
     code = """
 import sys, numba, numpy
-from simulator.run.warming import carry, survey
+from utak.simulator.run.warming import carry, survey
 survey()
 carry()
 print("scipy.linalg" in sys.modules)
@@ -57,8 +56,8 @@ def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
 
 def test_kernels_of_routes_are_compiled_in_advance_for_the_types_of_screens() -> None:
     code = (
-        "import numpy as np; from geometry import Screen; from geometry.homotopy import landmarks; "
-        "from geometry.pathfinders import polyanya; from geometry.routes import queries, router; "
+        "import numpy as np; from utak.geometry import Screen; from utak.geometry.homotopy import landmarks; "
+        "from utak.geometry.pathfinders import polyanya; from utak.geometry.routes import queries, router; "
         "queries.compile_route_kernels(); "
         "screen = Screen(np.ones((4, 4), bool)); print(len(screen.routes((0.5, 0.5), (3.5, 3.5), k=4)), "
         "screen.shortest((0.5, 0.5), (3.5, 3.5)) is not None); "
@@ -77,8 +76,8 @@ def test_integers_of_all_widths_share_one_compiled_copy() -> None:
 
 def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
     code = (
-        "import numpy as np; from geometry.kernels import jit; jit.PROGRESS.notice_delay = 0.0; "
-        "from geometry.homotopy.funnel import measure_line; measure_line(np.zeros((2, 2)), 2)"
+        "import numpy as np; from utak.geometry.kernels import jit; jit.PROGRESS.notice_delay = 0.0; "
+        "from utak.geometry.homotopy.funnel import measure_line; measure_line(np.zeros((2, 2)), 2)"
     )
     noticed = []
     for _ in range(2):
@@ -90,7 +89,7 @@ def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
 
 def test_kernels_also_run_uncompiled() -> None:
     code = (
-        "import numpy as np; from geometry import Screen; free = np.ones((9, 12), bool); "
+        "import numpy as np; from utak.geometry import Screen; free = np.ones((9, 12), bool); "
         "free[4, 3:6] = free[4, 7:9] = free[0:2, 5] = False; screen = Screen(free); "
         "print(len(screen.routes((0.5, 4.5), (11.5, 4.5), k=4)), screen.shortest((0.5, 4.5), (11.5, 4.5)).length > 11)"
     )
@@ -109,7 +108,7 @@ def kernels(path, decorator):
     return {f.name: f for f in functions if decorator in [getattr(d, "id", "") for d in f.decorator_list]}
 
 
-@pytest.mark.parametrize("path", sorted(Path(geometry.__file__).parent.rglob("*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(Path(utak.geometry.__file__).parent.rglob("*.py")), ids=lambda path: path.stem)
 def test_bare_kernels_make_and_return_no_arrays(path):
     """Numba would neither free them nor keep them alive."""
     bare, counting = kernels(path, "bare"), set(kernels(path, "compiled"))
@@ -131,7 +130,7 @@ ROOT = Path(__file__).resolve().parents[3]
 KERNEL = """
 import sys
 import numpy
-from geometry.kernels.jit import PROGRESS
+from utak.geometry.kernels.jit import PROGRESS
 sys.path.insert(0, sys.argv[1])
 from own_kernel import shifted
 print(shifted(2), PROGRESS.compiled_count)
@@ -143,7 +142,7 @@ def refuse(self):
 caching.InTreeCacheLocator.ensure_cache_path = refuse
 """
 OWN_KERNEL = """
-from geometry.kernels.jit import compiled
+from utak.geometry.kernels.jit import compiled
 @compiled
 def shifted(x: int) -> int:
     return x + 40

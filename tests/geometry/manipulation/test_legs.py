@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 import shapely
-
-from geometry.manipulation.legs import direction_to_grasp
-from geometry.raster.rasterize import squares
+from utak.geometry.manipulation.legs import direction_to_grasp
+from utak.geometry.raster.rasterize import squares
 
 
 @pytest.mark.parametrize("depth", [0.5, 1e-5, 4.5e-8, 0.0])

@@ -8,11 +8,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
-
-from benchmarks.errands import faults, free_squares, goal_of
-from benchmarks.worlds.makers import scenario
-from geometry.manipulation.goals import Roomy, is_goal_met, moved
-from geometry.manipulation.plan_carrying import (
+from utak.geometry.manipulation.goals import Roomy, is_goal_met, moved
+from utak.geometry.manipulation.plan_carrying import (
     At,
     Between,
     CarryingPlan,
@@ -23,9 +20,12 @@ from geometry.manipulation.plan_carrying import (
     first_plan,
     plan_carrying,
 )
-from geometry.manipulation.query import ManipulationQuery
-from geometry.manipulation.workspace import Workspace
-from geometry.motion.se2 import Rotate, Translate
+from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.manipulation.workspace import Workspace
+from utak.geometry.motion.se2 import Rotate, Translate
+
+from benchmarks.errands import faults, free_squares, goal_of
+from benchmarks.worlds.makers import scenario
 from tests.geometry.replay import replay, walls_of
 from tests.tables import few
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity, box
-
-from geometry.motion.body import new_moving_body
-from geometry.motion.cell_clearance import CELL_BLOCKED, CELL_CENTRE_FREE, CELL_FREE, classify_cell, clearance_at
-from geometry.motion.obstacle_field import ObstacleField
-from geometry.motion.se2 import Pose
+from utak.geometry.motion.body import new_moving_body
+from utak.geometry.motion.cell_clearance import CELL_BLOCKED, CELL_CENTRE_FREE, CELL_FREE, classify_cell, clearance_at
+from utak.geometry.motion.obstacle_field import ObstacleField
+from utak.geometry.motion.se2 import Pose
 
 HORSESHOE = shapely.Polygon([(0, 0), (6, 0), (6, 5), (4.8, 5), (4.8, 1.2), (1.2, 1.2), (1.2, 5), (0, 5)])
 TWO = shapely.MultiPolygon([box(0, 0, 3, 1), box(4, 0, 4.1, 0.1)])

@@ -11,9 +11,8 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
-
-from geometry.motion.first_contact import Contact, ContactBody, Obstacles, obstacle_part
-from geometry.motion.se2 import Motion, Pose, Rotate, Translate
+from utak.geometry.motion.first_contact import Contact, ContactBody, Obstacles, obstacle_part
+from utak.geometry.motion.se2 import Motion, Pose, Rotate, Translate
 
 MAX_PENETRATION = 1e-6  # squares: an overlap deeper than this is penetration
 ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
@@ -254,7 +253,8 @@ def test_a_motion_and_its_reverse_cancel(x: float, y: float, degrees: float, abo
 def test_first_contact_is_the_same_without_numba() -> None:
     """The kernels also run as plain Python."""
     code = (
-        "from shapely import box; from geometry.motion.first_contact import *; from geometry.motion.se2 import *;"
+        "from shapely import box; from utak.geometry.motion.first_contact import *;"
+        "from utak.geometry.motion.se2 import *;"
         "o = Obstacles([box(5, 0, 6, 9)]); b = ContactBody(box(0, 0, 1, 4));"
         "print(o.first_contact(b, Translate(9, 1)), o.first_contact(b, Rotate(-170, (1, 4))))"
     )

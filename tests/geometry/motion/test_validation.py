@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 import shapely
 from shapely import MultiPolygon, Polygon, box
-
-from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
-from geometry.manipulation.plan_carrying import At, InCorner, plan_carrying
-from geometry.motion.se2 import Pose
-from geometry.motion.validation import valid_polygons
+from utak.geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
+from utak.geometry.manipulation.plan_carrying import At, InCorner, plan_carrying
+from utak.geometry.motion.se2 import Pose
+from utak.geometry.motion.validation import valid_polygons
 
 BRICK = box(-2, -1, 2, 1)
 WALLS = box(-1, -1, 26, 13).difference(shapely.union_all([box(0, 0, 12, 12), box(13, 0, 25, 12), box(12, 4, 13, 7)]))

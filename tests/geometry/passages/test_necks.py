@@ -7,10 +7,10 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.geometry import Screen
+from utak.geometry.passages.walls import find_walls
 
 from benchmarks import doorways
-from geometry import Screen
-from geometry.passages.walls import find_walls
 from tests.geometry import oracles
 
 TWO_ROOMS = """

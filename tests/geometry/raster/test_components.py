@@ -3,8 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.raster.components import bounding_boxes, components
+from utak.geometry.raster.components import bounding_boxes, components
 
 
 def flood(mask: np.ndarray) -> np.ndarray:

@@ -4,9 +4,8 @@ import numpy as np
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.raster.components import components
-from geometry.raster.contours import outline
+from utak.geometry.raster.components import components
+from utak.geometry.raster.contours import outline
 
 
 def area(ring: tuple[tuple[int, int], ...]) -> float:

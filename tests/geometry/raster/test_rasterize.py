@@ -7,9 +7,8 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.rasterize import covered_areas, squares, squares_after
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.raster.rasterize import covered_areas, squares, squares_after
 
 WIDTH, HEIGHT = 14, 11
 whole = st.integers(-3, 16).map(float)

@@ -3,8 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.raster.surroundings import survey_square
+from utak.geometry.raster.surroundings import survey_square
 
 
 @settings(max_examples=60, deadline=None)

@@ -8,8 +8,8 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from utak.geometry import Route, Screen
 
-from geometry import Route, Screen
 from tests.geometry import oracles
 
 MAX_PATHS = 500  # ways over a pathgraph: screens with more are left out, for there may be any number

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity
-
-from geometry.raster.rasterize import squares
-from geometry.shapes.fit import fit_shapes
+from utak.geometry.raster.rasterize import squares
+from utak.geometry.shapes.fit import fit_shapes
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 TEE = shapely.Polygon([(0, 0), (6, 0), (6, 2), (4, 2), (4, 5), (2, 5), (2, 2), (0, 2)])

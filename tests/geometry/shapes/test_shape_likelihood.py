@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity
+from utak.geometry.raster.rasterize import squares
+from utak.geometry.shapes import misfit
+from utak.geometry.shapes.candidates import best_turned_shape
+from utak.geometry.shapes.shape_likelihood import SIZE_RANGE, parameter_volume
 
-from geometry.raster.rasterize import squares
-from geometry.shapes import misfit
-from geometry.shapes.candidates import best_turned_shape
-from geometry.shapes.shape_likelihood import SIZE_RANGE, parameter_volume
 from tests.tables import few
 
 PAD = 2

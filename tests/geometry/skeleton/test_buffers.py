@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-
-from geometry import Screen
-from geometry.skeleton import buffers
+from utak.geometry import Screen
+from utak.geometry.skeleton import buffers
 
 
 @pytest.fixture(autouse=True)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.geometry import Screen
+from utak.geometry.routes.layer import new_state
+from utak.geometry.skeleton import bit_parallel, lowest_cells
+from utak.geometry.skeleton.graph import WORDS_AHEAD, contract, is_node
+from utak.geometry.skeleton.skeleton import HALT
+from utak.geometry.skeleton.sweep import survey
 
-from geometry import Screen
-from geometry.routes.layer import new_state
-from geometry.skeleton import bit_parallel, lowest_cells
-from geometry.skeleton.graph import WORDS_AHEAD, contract, is_node
-from geometry.skeleton.skeleton import HALT
-from geometry.skeleton.sweep import survey
 from tests.geometry import lookalikes, oracles
 
 

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.geometry import Screen
+from utak.geometry.raster import distance_transform
+from utak.geometry.routes.layer import find_pathgraph, least_squared_clearance, new_state
+from utak.geometry.skeleton.graph import contract
+from utak.geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
+from utak.geometry.skeleton.sweep import survey
 
-from geometry import Screen
-from geometry.raster import distance_transform
-from geometry.routes.layer import find_pathgraph, least_squared_clearance, new_state
-from geometry.skeleton.graph import contract
-from geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
-from geometry.skeleton.sweep import survey
 from tests.geometry import lookalikes, oracles
 from tests.geometry.measuring import measure
 

@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import pytest
-
-from simulator.cli.main import main
-from simulator.episode.episode import read_episode
-from simulator.explaining.questions import Questions, questions_of_episode
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import read_episode
+from utak.simulator.explaining.questions import Questions, questions_of_episode
 
 THING = ["b" * 24, *["b......................b"] * 6, *["b.....ggg......U.......b"], *["b.....ggg..............b"] * 2]
 ROOM = [*THING, *["b......................b"] * 4, "b" * 24]

@@ -8,17 +8,17 @@ from typing import Any
 
 import clingo
 import pytest
+from utak.kb.evidence.proving import reason_of_proof
+from utak.kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
+from utak.kb.explanation.values import ProofNode
+from utak.kb.language.atoms import atom_parts
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.world.stated_plan import SETTLING_WORDS
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import read_episode
+from utak.simulator.explaining.questions import Questions, questions_of_episode
 
 from benchmarks.harness.reasons import complaints, covers
-from kb.evidence.proving import reason_of_proof
-from kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
-from kb.explanation.values import ProofNode
-from kb.language.atoms import atom_parts
-from kb.language.diagnostics import BadInputError
-from kb.world.stated_plan import SETTLING_WORDS
-from simulator.cli.main import main
-from simulator.episode.episode import read_episode
-from simulator.explaining.questions import Questions, questions_of_episode
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent

@@ -1,6 +1,6 @@
 """The record of a run, read back from its lines."""
 
-from kb.evidence.record import Record
+from utak.kb.evidence.record import Record
 
 
 def test_the_places_of_a_long_run_are_those_of_its_steps_since_all_were_given_anew() -> None:

@@ -13,9 +13,8 @@ from typing import NamedTuple
 
 import clingo
 import clingo.ast
-
-from kb.explanation.values import ProofNode, RivalChoice, RuleText
-from kb.reasoning.encodings import encoding_files, encoding_text
+from utak.kb.explanation.values import ProofNode, RivalChoice, RuleText
+from utak.kb.reasoning.encodings import encoding_files, encoding_text
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.kb.explanation.programs import ExplanationError
+from utak.kb.explanation.proof import explain_decision
+from utak.kb.explanation.values import ProofNode
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.reader import facts_from_text
+from utak.kb.reasoning.encodings import encoding_text
 
-from kb.explanation.programs import ExplanationError
-from kb.explanation.proof import explain_decision
-from kb.explanation.values import ProofNode
-from kb.language.diagnostics import BadInputError
-from kb.language.reader import facts_from_text
-from kb.reasoning.encodings import encoding_text
 from tests.encoding_cases import ENCODINGS, Case, cases_of
 from tests.kb.explanation.proof_checker import Decision, best_decisions, faults, faults_of_rivals
 from tests.kb.explanation.random_facts import INPUTS, encoding_path, random_facts

@@ -7,11 +7,10 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-
-from kb.explanation.programs import DecisionProgram, ExplanationError
-from kb.explanation.query_absence import explain_query_absence
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.query import QueryEngine
+from utak.kb.explanation.programs import DecisionProgram, ExplanationError
+from utak.kb.explanation.query_absence import explain_query_absence
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.query import QueryEngine
 
 RULES = """\
 near(X, Y) :- object(X), object(Y), X != Y, offset(X, E1, N1), offset(Y, E2, N2), |E1-E2| + |N1-N2| < 900.

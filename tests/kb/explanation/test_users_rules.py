@@ -3,16 +3,15 @@
 from pathlib import Path
 
 import pytest
-
-from kb.explanation.belief import explain_query_atom
-from kb.explanation.programs import DecisionProgram, ExplanationError
-from kb.explanation.proof import explain_decision
-from kb.explanation.whynot import explain_absence
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.encodings import KB_ENCODINGS
-from kb.reasoning.query import QueryEngine
-from kb.reasoning.solver import solve
-from kb.reasoning.user_rules import read_rules
+from utak.kb.explanation.belief import explain_query_atom
+from utak.kb.explanation.programs import DecisionProgram, ExplanationError
+from utak.kb.explanation.proof import explain_decision
+from utak.kb.explanation.whynot import explain_absence
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.query import QueryEngine
+from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.user_rules import read_rules
 
 HEAVY = """\
 %! because "Region {R} is heavy: {N/10} squares of it are expected to be occupied."

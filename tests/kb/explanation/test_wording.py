@@ -2,10 +2,9 @@
 
 import pytest
 from clingo.ast import ASTType, parse_string
-
-from kb.explanation.wording import absent_words, comparison_claim, comparison_words
-from kb.reasoning.sentences import PredicateWords
-from kb.tracing.instrument import literal_info
+from utak.kb.explanation.wording import absent_words, comparison_claim, comparison_words
+from utak.kb.reasoning.sentences import PredicateWords
+from utak.kb.tracing.instrument import literal_info
 
 VALUES = {"D": "-286", "E": "1650", "N": "-950", "X": "a", "K": "3"}
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.language.reader import facts_from_text, read_facts
+from utak.kb.language.terms import Number, Symbol, Text
 
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from kb.language.reader import facts_from_text, read_facts
-from kb.language.terms import Number, Symbol, Text
 from tests.tables import few
 
 GIVEN_UP = (

@@ -4,8 +4,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.language.wkt import WktError, parse_wkt
+from utak.kb.language.wkt import WktError, parse_wkt
 
 GOOD = [
     "POINT (1.5 -2)",

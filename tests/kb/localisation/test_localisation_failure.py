@@ -6,20 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from utak.kb.body import Impression, Move, Release, Turn
+from utak.kb.knowledge import Knowledge
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import FrameHypothesis
+from utak.kb.localisation.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.occupancy import OCCUPIED, OPEN
+from utak.kb.mapping.patch import Patch
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.frame import Frame, turned
+from utak.kb.task.task import Task
+from utak.kb.world.object_names import ObjectNames
+from utak.planner.agenda.decider import Decider
 
-from kb.body import Impression, Move, Release, Turn
-from kb.knowledge import Knowledge
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import FrameHypothesis
-from kb.localisation.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
-from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import OCCUPIED, OPEN
-from kb.mapping.patch import Patch
-from kb.objects.held_object import HeldObject
-from kb.perception.frame import Frame, turned
-from kb.task.task import Task
-from kb.world.object_names import ObjectNames
-from planner.agenda.decider import Decider
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of
 from tests.kb.localisation.test_tracker import ROOM

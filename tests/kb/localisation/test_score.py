@@ -5,16 +5,15 @@ from typing import cast
 
 import numpy as np
 import pytest
-
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
-from kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from kb.localisation.propose.earlier_motion import ReestimatedMotion
-from kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propose_earlier_motions
-from kb.localisation.state import TrackerState
-from kb.perception.frame import CENTRE, Frame
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
+from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
+from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from utak.kb.localisation.propose.earlier_motion import ReestimatedMotion
+from utak.kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propose_earlier_motions
+from utak.kb.localisation.state import TrackerState
+from utak.kb.perception.frame import CENTRE, Frame
 
 HELD = CENTRED_HYPOTHESES[0]
 STUCK = Explanation("stuck", CENTRE, Frame(), 0, 0.5)

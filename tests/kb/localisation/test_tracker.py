@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
+from utak.kb.body import Move, Push, Turn
+from utak.kb.localisation.field_account import CellStatus
+from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
+from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.occupancy import FREE, OPEN
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.frame import CENTRE, Frame, turned
 
-from kb.body import Move, Push, Turn
-from kb.localisation.field_account import CellStatus
-from kb.localisation.hypotheses.explanation import Explanation, cheapest
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
-from kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
-from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import FREE, OPEN
-from kb.objects.held_object import HeldObject
-from kb.perception.frame import CENTRE, Frame, turned
 from tests.kb.drawings import LARGE_ROOM, walked
 from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.localisation.hypotheses.test_remap import around

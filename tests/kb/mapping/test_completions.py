@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-
-from geometry.counts.gibbs import DRAWN, OCCUPIED
-from kb.mapping.completions import (
+from utak.geometry.counts.gibbs import DRAWN, OCCUPIED
+from utak.kb.mapping.completions import (
     DRAWS_PER_COMPLETION,
     MAX_COMPLETIONS,
     NO_COMPLETIONS,
@@ -14,7 +13,8 @@ from kb.mapping.completions import (
     given_squares,
     scenes,
 )
-from kb.mapping.occupancy import MapView
+from utak.kb.mapping.occupancy import MapView
+
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 LOOKS = [(20, 20), (22, 21), (23, 23)]

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Point, affinity, box
+from utak.geometry.counts.gibbs import DRAWN
+from utak.geometry.counts.moments import Blobs, blobs
+from utak.kb.mapping.object_heat import end_probability, likeness, summarise_completions
+from utak.kb.mapping.occupancy import OPEN
 
-from geometry.counts.gibbs import DRAWN
-from geometry.counts.moments import Blobs, blobs
-from kb.mapping.object_heat import end_probability, likeness, summarise_completions
-from kb.mapping.occupancy import OPEN
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 

@@ -5,12 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-
-from geometry.counts import gibbs
-from geometry.counts.gibbs import DRAWN
-from kb.mapping.completions import MAX_COMPLETIONS, Completions
-from kb.mapping.obstacle_chance import ERROR_PROBABILITY, ERROR_PROBABILITY_AT_EDGE, UNSEEN_PROBABILITY, ObstacleChance
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.geometry.counts import gibbs
+from utak.geometry.counts.gibbs import DRAWN
+from utak.kb.mapping.completions import MAX_COMPLETIONS, Completions
+from utak.kb.mapping.obstacle_chance import (
+    ERROR_PROBABILITY,
+    ERROR_PROBABILITY_AT_EDGE,
+    UNSEEN_PROBABILITY,
+    ObstacleChance,
+)
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 SIDE = 5
 images = arrays(np.int8, (MAX_COMPLETIONS, SIDE, SIDE), elements=st.integers(0, 1))

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from utak.kb.mapping.occupancy import OccupancyMap
+from utak.kb.perception.frame import Frame
+from utak.kb.perception.retina import count_ranges
 
-from kb.mapping.occupancy import OccupancyMap
-from kb.perception.frame import Frame
-from kb.perception.retina import count_ranges
 from tests.kb.eyes import random_room, retina, world_of
 
 

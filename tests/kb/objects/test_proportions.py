@@ -4,12 +4,11 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
-
-from geometry.motion.se2 import Translate
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import HeldObject, initial_insets
-from kb.objects.proportions import corrected_shape, possible_rectangle_shapes, side_intervals
-from kb.objects.subcell_extent import FULL_INSETS, SubcellExtent
+from utak.geometry.motion.se2 import Translate
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import HeldObject, initial_insets
+from utak.kb.objects.proportions import corrected_shape, possible_rectangle_shapes, side_intervals
+from utak.kb.objects.subcell_extent import FULL_INSETS, SubcellExtent
 
 SEEN = {"brick": 86, "square": 2, "rectangle": 86, "polygon": 99}
 parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never exactly on a grid line

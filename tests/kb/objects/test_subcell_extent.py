@@ -10,11 +10,10 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
-
-from geometry.motion.se2 import Rotate, Translate
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import HeldObject, initial_insets
-from kb.objects.subcell_extent import (
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import HeldObject, initial_insets
+from utak.kb.objects.subcell_extent import (
     FULL_INSETS,
     MIN_TESTED_INTERVAL,
     NO_INSETS,
@@ -25,8 +24,8 @@ from kb.objects.subcell_extent import (
     narrowed,
     turn_sides,
 )
-from kb.world.model import Node
-from planner.skills.measure_size import INSET_TOLERANCE, least_outline, push_parts
+from utak.kb.world.model import Node
+from utak.planner.skills.measure_size import INSET_TOLERANCE, least_outline, push_parts
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 3), (3, 3), (3, 6), (0, 6)])
 SHAPES = {"square": shapely.box(0, 0, 4, 4), "brick": shapely.box(0, 0, 3, 6), "ell": ELL}

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from utak.kb.body import DIRECTIONS
+from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, SAMPLING_TIE_TOLERANCE, Frame, turned
+from utak.kb.perception.retina import FIELDS, OWN_FIELD
+from utak.simulator.world.senses import Senses
 
-from kb.body import DIRECTIONS
-from kb.perception.frame import MAX_SAMPLED_SQUARES, SAMPLING_TIE_TOLERANCE, Frame, turned
-from kb.perception.retina import FIELDS, OWN_FIELD
-from simulator.world.senses import Senses
 from tests.kb.eyes import sampled
 
 length = st.floats(-100, 100).map(lambda v: round(v, 6))

@@ -5,9 +5,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-
-from geometry.raster.components import components
-from kb.perception.protrusions import (
+from utak.geometry.raster.components import components
+from utak.kb.perception.protrusions import (
     MAX_THING_LENGTH,
     joined_through_walls,
     protrusions,

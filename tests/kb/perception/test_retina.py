@@ -5,8 +5,7 @@ from math import floor
 
 import numpy as np
 import pytest
-
-from kb.perception.retina import (
+from utak.kb.perception.retina import (
     FIELDS,
     OWN_FIELD,
     RETINA_REACH,

@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.assumptions import canonical_facts, read_assumptions
-from kb.reasoning.user_rules import read_tested_rules
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.assumptions import canonical_facts, read_assumptions
+from utak.kb.reasoning.user_rules import read_tested_rules
 
 # By the fact: the rule that states it, the facts that queries see besides, and the encodings that it reaches.
 REACH = {
@@ -55,7 +54,7 @@ def test_the_place_is_that_of_the_text() -> None:
 
 
 def test_rules_that_never_end_in_queries_are_refused(tmp_path: Path) -> None:
-    from kb.reasoning.user_rules import RuleLimits
+    from utak.kb.reasoning.user_rules import RuleLimits
 
     path = tmp_path / "rules.lp"
     path.write_text("p :- X = 1..100000000, X < 0.\n")
@@ -64,7 +63,7 @@ def test_rules_that_never_end_in_queries_are_refused(tmp_path: Path) -> None:
 
 
 def test_reading_a_large_file_keeps_to_the_limit_of_time(tmp_path: Path) -> None:
-    from kb.reasoning.user_rules import RuleLimits
+    from utak.kb.reasoning.user_rules import RuleLimits
 
     path = tmp_path / "rules.lp"
     path.write_text("p(" + "1," * 300_000 + "1).\n")

@@ -3,17 +3,16 @@
 from pathlib import Path
 
 import pytest
-
-from kb.perception.interpretation import (
+from utak.kb.perception.interpretation import (
     FELT_OBJECT_CONFIDENCE,
     LONGEST_OBJECT,
     SHORTEST_WALL,
     SURELY_VERGE,
     interpret_regions,
 )
-from kb.perception.regions import Percept, Region
-from kb.reasoning.encodings import all_encodings, encoding_constant, encoding_files, encoding_path, encoding_text
-from kb.reasoning.solver import solve, solve_within
+from utak.kb.perception.regions import Percept, Region
+from utak.kb.reasoning.encodings import all_encodings, encoding_constant, encoding_files, encoding_path, encoding_text
+from utak.kb.reasoning.solver import solve, solve_within
 
 
 def test_a_folder_of_files_is_one_encoding(tmp_path: Path) -> None:

@@ -7,9 +7,8 @@ from contextlib import suppress
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
 
 FACTS = [
     "node(o1).",

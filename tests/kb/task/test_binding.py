@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.kb.language.diagnostics import SourceSpan
+from utak.kb.language.terms import Symbol
+from utak.kb.task.binding import reconcile
+from utak.kb.task.task import Claim, Parameter, Task
+from utak.kb.world.model import Node
 
-from kb.language.diagnostics import SourceSpan
-from kb.language.terms import Symbol
-from kb.task.binding import reconcile
-from kb.task.task import Claim, Parameter, Task
-from kb.world.model import Node
 from tests.kb.drawings import known_model
 
 NOWHERE = SourceSpan(0, 0, 0)

@@ -6,11 +6,10 @@ import clingo
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError
-from kb.language.reader import facts_from_text
-from kb.language.vocabulary import GOAL_CONDITIONS, check_goal_table
-from kb.task.task import GOAL_ARGUMENT_KINDS, Task, read_task
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.vocabulary import GOAL_CONDITIONS, check_goal_table
+from utak.kb.task.task import GOAL_ARGUMENT_KINDS, Task, read_task
 
 
 def task(folder: Path, start: str, goal: str) -> Task:

@@ -4,10 +4,9 @@ from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
-
-from kb.reasoning.query_worker import answer_query
-from kb.three_valued.term_values import deciding_numbers
-from kb.three_valued.uncertain_values import COMPARISON_OPERATORS, Unknown, compare
+from utak.kb.reasoning.query_worker import answer_query
+from utak.kb.three_valued.term_values import deciding_numbers
+from utak.kb.three_valued.uncertain_values import COMPARISON_OPERATORS, Unknown, compare
 
 ranges = st.builds(lambda low, size: range(low, low + size), st.integers(-6, 6), st.integers(0, 6))
 bound = st.none() | st.integers(-6, 9)

@@ -4,8 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-
-from kb.reasoning.query_worker import answer_query
+from utak.kb.reasoning.query_worker import answer_query
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "asking.md"
 ROWS = re.findall(r"^\| ([YN?]) \| ([YN?]) \| ([YN?]) \| ([YN?]) \| ([YN?]) \|$", PAGE.read_text(), re.MULTILINE)

@@ -8,13 +8,13 @@ import shapely
 import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.kb.language.vocabulary import CORNER_NAMES
+from utak.kb.mapping.occupancy import OCCUPIED, OPEN
+from utak.kb.mapping.patch import patch_of
+from utak.kb.world.corners import corners, known_floor
+from utak.kb.world.model import Node
+from utak.planner.screen.projection import dilate
 
-from kb.language.vocabulary import CORNER_NAMES
-from kb.mapping.occupancy import OCCUPIED, OPEN
-from kb.mapping.patch import patch_of
-from kb.world.corners import corners, known_floor
-from kb.world.model import Node
-from planner.screen.projection import dilate
 from tests.kb.drawings import known_model
 from tests.kb.eyes import random_room
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from utak.kb.body import Grasp, Move, Push, Release
+from utak.kb.knowledge import Knowledge
+from utak.kb.perception.interpretation import FELT_OBJECT_CONFIDENCE
+from utak.kb.world.objects import MapRegions, separate_felt_things
 
-from kb.body import Grasp, Move, Push, Release
-from kb.knowledge import Knowledge
-from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE
-from kb.world.objects import MapRegions, separate_felt_things
 from tests.kb.drawings import known_model
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 

@@ -8,19 +8,19 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from utak.kb.body import Grasp, Move, Release
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView
+from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.objects.shape_fit import ShapeMeasurer
+from utak.kb.perception.frame import Frame
+from utak.kb.world.corners import corners
+from utak.kb.world.facts import Places, model_facts
+from utak.kb.world.model import MAX_FREE_PROBABILITY, count_open_squares
+from utak.kb.world.object_names import ObjectNames
+from utak.kb.world.objects import lay_upon
+from utak.kb.world.rooms import rooms_of
 
-from kb.body import Grasp, Move, Release
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView
-from kb.mapping.patch import Patch, patch_of, patch_of_polygon
-from kb.objects.held_object import HeldObject
-from kb.objects.shape_fit import ShapeMeasurer
-from kb.perception.frame import Frame
-from kb.world.corners import corners
-from kb.world.facts import Places, model_facts
-from kb.world.model import MAX_FREE_PROBABILITY, count_open_squares
-from kb.world.object_names import ObjectNames
-from kb.world.objects import lay_upon
-from kb.world.rooms import rooms_of
 from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import impression, utak_in, world_of
 

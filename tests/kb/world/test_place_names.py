@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
+from utak.kb.world.place_names import PlaceNames
+from utak.kb.world.rooms import Door, Rooms, rooms_of
 
-from kb.world.place_names import PlaceNames
-from kb.world.rooms import Door, Rooms, rooms_of
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_rules import WALKER
 

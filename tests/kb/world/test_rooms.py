@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from utak.kb.perception.interpretation import interpret_regions
+from utak.kb.perception.regions import map_regions
+from utak.kb.world.model import MAX_FREE_PROBABILITY, WorldModel
+from utak.kb.world.rooms import rooms_of
+from utak.planner.deciding.search import island_contacts
 
-from kb.perception.interpretation import interpret_regions
-from kb.perception.regions import map_regions
-from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
-from kb.world.rooms import rooms_of
-from planner.deciding.search import island_contacts
 from tests.kb.drawings import known_model, unclear
 from tests.planner.situations import situation_of
 

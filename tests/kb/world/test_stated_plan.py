@@ -3,13 +3,12 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError
-from kb.language.vocabulary import PLAN_PREDICATES, ROBOT
-from kb.world.stated_plan import SETTLING_WORDS, StatedPlan, stated_plan
-from planner.oracles.carry import Certainty
-from planner.oracles.problem import HERE, PlacedGoal
-from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.vocabulary import PLAN_PREDICATES, ROBOT
+from utak.kb.world.stated_plan import SETTLING_WORDS, StatedPlan, stated_plan
+from utak.planner.oracles.carry import Certainty
+from utak.planner.oracles.problem import HERE, PlacedGoal
+from utak.planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 GOALS = (
     PlacedGoal("g1", "in(x,room(next))", "o1", False),

@@ -3,14 +3,14 @@
 from dataclasses import replace
 
 import pytest
+from utak.kb.language.reader import facts_from_text
+from utak.planner.agenda.own_goals import OwnGoals
+from utak.planner.decision import TaskVerdict
+from utak.planner.goals.robot_goals import destination
+from utak.planner.stages import Stage
+from utak.planner.tasking.intention import Intention
+from utak.planner.tasking.setting import WhereGoalsHold
 
-from kb.language.reader import facts_from_text
-from planner.agenda.own_goals import OwnGoals
-from planner.decision import TaskVerdict
-from planner.goals.robot_goals import destination
-from planner.stages import Stage
-from planner.tasking.intention import Intention
-from planner.tasking.setting import WhereGoalsHold
 from tests.planner.situations import BESIDE_A_THING, all_felt, known_situation, situation_of, turn_of
 
 

@@ -11,25 +11,25 @@ from typing import Any, NamedTuple, cast
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
+from utak.geometry.motion.se2 import Translate
+from utak.kb.body import Body, Command, Grasp, Move, Push, Release, Turn
+from utak.kb.task.task import Task
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.agenda.decider import Decider
+from utak.planner.carrying.manipulation_oracle import ManipulationPlan
+from utak.planner.carrying.remaining_plan import PlanOperations, safe_prefix
+from utak.planner.cycle import Options, Robot
+from utak.planner.deciding.pursuit import Pursuer
+from utak.planner.decision import Decision
+from utak.planner.navigation.loop_guard import LoopGuard
+from utak.planner.situation import Situation
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.harness.trial import Conditions, run_trial
-from geometry.motion.se2 import Translate
-from kb.body import Body, Command, Grasp, Move, Push, Release, Turn
-from kb.task.task import Task
-from kb.world.model import Node, WorldModel
-from planner.agenda.decider import Decider
-from planner.carrying.manipulation_oracle import ManipulationPlan
-from planner.carrying.remaining_plan import PlanOperations, safe_prefix
-from planner.cycle import Options, Robot
-from planner.deciding.pursuit import Pursuer
-from planner.decision import Decision
-from planner.navigation.loop_guard import LoopGuard
-from planner.situation import Situation
-from simulator.episode.episode import EpisodeLog
-from simulator.run.robots import make_robot
-from simulator.run.session import Result, Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
 from tests.planner.situations import watched_robot
 from tests.tables import few
 

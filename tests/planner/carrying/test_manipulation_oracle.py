@@ -8,25 +8,25 @@ from typing import cast
 import pytest
 import shapely
 import shapely.affinity
-
-from geometry.cspace.bottleneck import Bottleneck
-from geometry.cspace.plan_motion import MotionPlan
-from geometry.manipulation.plan_carrying import CarryingPlan, Inside
-from kb.language.reader import facts_from_text
-from kb.mapping.occupancy import OCCUPIED
-from kb.mapping.patch import patch_of_polygon
-from kb.task.task import Task
-from kb.world.model import Node
-from kb.world.rooms import MIN_DOOR_CONFIDENCE
-from planner.carrying.infeasibility import Infeasibility, certify, closest_refuted, how_narrow
-from planner.carrying.manipulation_oracle import (
+from utak.geometry.cspace.bottleneck import Bottleneck
+from utak.geometry.cspace.plan_motion import MotionPlan
+from utak.geometry.manipulation.plan_carrying import CarryingPlan, Inside
+from utak.kb.language.reader import facts_from_text
+from utak.kb.mapping.occupancy import OCCUPIED
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.task.task import Task
+from utak.kb.world.model import Node
+from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
+from utak.planner.carrying.infeasibility import Infeasibility, certify, closest_refuted, how_narrow
+from utak.planner.carrying.manipulation_oracle import (
     CONTACTS_FOR_CLEARANCE,
     WALL_CLEARANCE,
     ManipulationOracle,
     ManipulationPlan,
     Request,
 )
-from planner.goals.placement import POSSIBLE_OBJECT
+from utak.planner.goals.placement import POSSIBLE_OBJECT
+
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from utak.kb.world.model import WorldModel
+from utak.planner.carrying.open_facts import nearest_open_fact, open_fact_against, possible_width, proof_if_not_found
+from utak.planner.decision import impossible
+from utak.planner.sights.walls import FeelingScope, unfelt_walls
 
-from kb.world.model import WorldModel
-from planner.carrying.open_facts import nearest_open_fact, open_fact_against, possible_width, proof_if_not_found
-from planner.decision import impossible
-from planner.sights.walls import FeelingScope, unfelt_walls
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 

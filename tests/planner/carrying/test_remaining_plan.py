@@ -7,13 +7,11 @@ from pathlib import Path
 import pytest
 import shapely
 from shapely.affinity import translate
-
-from benchmarks.harness.trial import Conditions, run_trial
-from geometry.manipulation.goals import End
-from geometry.motion.se2 import Rotate
-from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import ManipulationPlan
-from planner.carrying.remaining_plan import (
+from utak.geometry.manipulation.goals import End
+from utak.geometry.motion.se2 import Rotate
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.carrying.manipulation_oracle import ManipulationPlan
+from utak.planner.carrying.remaining_plan import (
     AREA_TOLERANCE,
     PlanOperations,
     RemainingPlan,
@@ -21,8 +19,10 @@ from planner.carrying.remaining_plan import (
     revalidate,
     start_from_robot,
 )
-from planner.goals.placement import meets_end, to_view_frame
-from planner.situation import Situation
+from utak.planner.goals.placement import meets_end, to_view_frame
+from utak.planner.situation import Situation
+
+from benchmarks.harness.trial import Conditions, run_trial
 from tests.planner.situations import watched_robot
 
 

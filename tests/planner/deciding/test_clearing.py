@@ -5,20 +5,20 @@ from dataclasses import replace
 import pytest
 import shapely
 import shapely.affinity
+from utak.geometry.manipulation.plan_carrying import At, Inside
+from utak.geometry.motion.se2 import Pose
+from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from utak.geometry.raster.rasterize import covered_areas
+from utak.kb.body import Grasp, Move, Push, Turn
+from utak.kb.language.reader import facts_from_text
+from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH
+from utak.planner.deciding.clearing import ObstacleClearer
+from utak.planner.deciding.obstacles import TRIAL_PUSH, Obstacle, obstacles
+from utak.planner.decision import Decision
+from utak.planner.goals.placement import possible_extension, pull_out_end, to_view_frame
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 
-from geometry.manipulation.plan_carrying import At, Inside
-from geometry.motion.se2 import Pose
-from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
-from geometry.raster.rasterize import covered_areas
-from kb.body import Grasp, Move, Push, Turn
-from kb.language.reader import facts_from_text
-from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH
-from planner.deciding.clearing import ObstacleClearer
-from planner.deciding.obstacles import TRIAL_PUSH, Obstacle, obstacles
-from planner.decision import Decision
-from planner.goals.placement import possible_extension, pull_out_end, to_view_frame
-from planner.situation import Situation
-from planner.stages import Stage
 from tests.planner.situations import all_felt, situation_of, tools_with, turn_of
 from tests.planner.situations import known_situation as known
 

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from utak.kb.body import Move
+from utak.kb.language.reader import facts_from_text
+from utak.planner.carrying.open_facts import nearest_open_fact
+from utak.planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
+from utak.planner.sights.walls import feeling_places
+from utak.planner.stages import Stage
+from utak.simulator.run.session import Result, Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.worlds.filled.doorplugs import plugged_world
 from benchmarks.worlds.scenes import write
-from kb.body import Move
-from kb.language.reader import facts_from_text
-from planner.carrying.open_facts import nearest_open_fact
-from planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
-from planner.sights.walls import feeling_places
-from planner.stages import Stage
-from simulator.run.session import Result, Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
 from tests.kb.drawings import known_model
 from tests.planner.situations import all_felt, situation_of, turn_of
 from tests.tables import few
@@ -29,8 +29,8 @@ ROOM = ["b" * 12, *["b" + "." * 10 + "b"] * 4, "b...U......b", *["b" + "." * 10 
 
 def ended(folder: Path, pull: bool = True) -> Result:
     """Return the result of a run in a scenario of at most 120 commands."""
-    from simulator.episode.episode import EpisodeLog
-    from simulator.run.robots import make_robot
+    from utak.simulator.episode.episode import EpisodeLog
+    from utak.simulator.run.robots import make_robot
 
     with EpisodeLog(folder / "episode.jsonl") as log:
         return Session(read_scenario(folder), Settings(max_steps=120, pull=pull), make_robot, log).run()

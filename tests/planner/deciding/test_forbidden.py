@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from utak.kb.task.task import Task
+from utak.kb.world.rooms import Door, count_crossings, went_through
+from utak.planner.deciding.keeping import ConstraintKeeper
+from utak.planner.screen.projection import UNSEEN_LEVEL
+from utak.planner.situation import Situation
 
 import utak
-from kb.task.task import Task
-from kb.world.rooms import Door, count_crossings, went_through
-from planner.deciding.keeping import ConstraintKeeper
-from planner.screen.projection import UNSEEN_LEVEL
-from planner.situation import Situation
 from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.goals.test_object_goals import facts_from_text

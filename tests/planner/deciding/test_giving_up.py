@@ -5,16 +5,16 @@ from dataclasses import replace
 from typing import cast
 
 import shapely
+from utak.kb.body import Command, Impression, Move, Release
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.task.task import Task
+from utak.kb.world.corners import Corner
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import rooms_of
+from utak.planner.agenda.decider import Decider
+from utak.planner.cycle import Options, Robot
+from utak.planner.decision import Decision, TaskVerdict
 
-from kb.body import Command, Impression, Move, Release
-from kb.objects.held_object import HeldObject
-from kb.task.task import Task
-from kb.world.corners import Corner
-from kb.world.model import WorldModel
-from kb.world.rooms import rooms_of
-from planner.agenda.decider import Decider
-from planner.cycle import Options, Robot
-from planner.decision import Decision, TaskVerdict
 from tests.planner.test_cycle import EMPTY, SQUARE, DrawnBody
 
 

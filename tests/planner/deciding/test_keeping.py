@@ -6,17 +6,17 @@ from typing import Any
 
 import pytest
 import shapely
+from utak.kb.body import Move
+from utak.kb.language.reader import facts_from_text
+from utak.kb.task.task import Task
+from utak.planner.deciding.keeping import ConstraintKeeper
+from utak.planner.decision import Decision, TaskVerdict
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
-from kb.body import Move
-from kb.language.reader import facts_from_text
-from kb.task.task import Task
-from planner.deciding.keeping import ConstraintKeeper
-from planner.decision import Decision, TaskVerdict
-from simulator.episode.episode import EpisodeLog
-from simulator.run.robots import make_robot
-from simulator.run.session import Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
 from tests.planner.test_constraints import ROWS, box, situation_for

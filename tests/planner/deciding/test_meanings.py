@@ -2,16 +2,17 @@
 
 from dataclasses import replace
 
-from geometry.manipulation.goals import At
-from geometry.motion.se2 import Pose
-from kb.body import Move
-from kb.tracing.decisions import SolverCall, record_decisions
-from kb.world.model import WorldModel
-from planner.advice import Act, Go
-from planner.agenda.decider import Decider
-from planner.carrying.plan_executor import PlanExecutor
-from planner.decision import Decision, TaskVerdict
-from simulator.explaining.fixing.recorded import task_from_texts
+from utak.geometry.manipulation.goals import At
+from utak.geometry.motion.se2 import Pose
+from utak.kb.body import Move
+from utak.kb.tracing.decisions import SolverCall, record_decisions
+from utak.kb.world.model import WorldModel
+from utak.planner.advice import Act, Go
+from utak.planner.agenda.decider import Decider
+from utak.planner.carrying.plan_executor import PlanExecutor
+from utak.planner.decision import Decision, TaskVerdict
+from utak.simulator.explaining.fixing.recorded import task_from_texts
+
 from tests.planner.situations import all_felt, known_situation
 from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET, POCKET_GOAL, pose
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.kb.body import Command, Impression
+from utak.kb.perception.retina import FIELDS, OWN_FIELD
+from utak.kb.task.task import Task
+from utak.planner.cycle import Options, Robot
+from utak.planner.decision import TaskVerdict
 
-from kb.body import Command, Impression
-from kb.perception.retina import FIELDS, OWN_FIELD
-from kb.task.task import Task
-from planner.cycle import Options, Robot
-from planner.decision import TaskVerdict
 from tests.kb.eyes import impression, random_room, utak_in, world_of
 from tests.planner.test_cycle import NORTHEAST, SQUARE
 

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from utak.kb.body import Move
+from utak.kb.language.reader import facts_from_text
+from utak.kb.localisation.hypotheses.walk_outcomes import squares_passed
+from utak.planner.deciding.feeling import Passages
+from utak.planner.screen.moves import EDGE_OFFSET
+from utak.planner.sights.passages import SAME_LINE
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 
 import utak
-from kb.body import Move
-from kb.language.reader import facts_from_text
-from kb.localisation.hypotheses.walk_outcomes import squares_passed
-from planner.deciding.feeling import Passages
-from planner.screen.moves import EDGE_OFFSET
-from planner.sights.passages import SAME_LINE
-from planner.situation import Situation
-from planner.stages import Stage
 from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
 from tests.tables import few
 

@@ -7,26 +7,26 @@ from typing import Any, cast
 import numpy as np
 import pytest
 import shapely
+from utak.geometry.manipulation.plan_carrying import CarryingPlan, Inside, Leg
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.kb.body import Command, Grasp, Move, Push, Release
+from utak.kb.language.reader import facts_from_text
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.task.binding import Reconciliation
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.advice import Act, Go
+from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
+from utak.planner.carrying.plan_executor import Advice, PlanExecutor
+from utak.planner.carrying.preconditions import needed_view
+from utak.planner.carrying.remaining_plan import RemainingPlan, grasp_direction
+from utak.planner.deciding.transport import Transporter
+from utak.planner.decision import TaskVerdict
+from utak.planner.goals.placement import Placement
+from utak.planner.sights.frontiers import FOVEA_RANGE
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 
-from geometry.manipulation.plan_carrying import CarryingPlan, Inside, Leg
-from geometry.motion.se2 import Rotate, Translate
-from kb.body import Command, Grasp, Move, Push, Release
-from kb.language.reader import facts_from_text
-from kb.mapping.occupancy import OPEN
-from kb.task.binding import Reconciliation
-from kb.world.model import Node, WorldModel
-from planner.advice import Act, Go
-from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
-from planner.carrying.plan_executor import Advice, PlanExecutor
-from planner.carrying.preconditions import needed_view
-from planner.carrying.remaining_plan import RemainingPlan, grasp_direction
-from planner.deciding.transport import Transporter
-from planner.decision import TaskVerdict
-from planner.goals.placement import Placement
-from planner.sights.frontiers import FOVEA_RANGE
-from planner.situation import Situation
-from planner.stages import Stage
 from tests.kb.drawings import known_model
 from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with, turn_of
 

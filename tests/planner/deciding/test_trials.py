@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
-from kb.body import Grasp, Move, Push, Release
-from kb.language.reader import facts_from_text
-from planner.deciding.trials import Trials
-from planner.situation import Situation
-from planner.stages import Stage
+from utak.kb.body import Grasp, Move, Push, Release
+from utak.kb.language.reader import facts_from_text
+from utak.planner.deciding.trials import Trials
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
+
 from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
 
 SMALL = ["bbbbbbbbbbbb", "b..........b", "b..gg......b", "b..gg...U..b", "b..........b", "bbbbbbbbbbbb"]

@@ -6,27 +6,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-
-from geometry.manipulation.plan_carrying import Inside
-from kb.body import Move
-from kb.language.reader import facts_from_text
-from kb.task.binding import Reconciliation
-from kb.world.model import WorldModel
-from kb.world.rooms import MIN_DOOR_CONFIDENCE
-from planner.agenda.decider import Decider
-from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.manipulation_oracle import ManipulationOracle, Request
-from planner.carrying.open_facts import open_fact_against
-from planner.deciding.transport import Transporter
-from planner.deciding.verification import (
+from utak.geometry.manipulation.plan_carrying import Inside
+from utak.kb.body import Move
+from utak.kb.language.reader import facts_from_text
+from utak.kb.task.binding import Reconciliation
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
+from utak.planner.agenda.decider import Decider
+from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.carrying.manipulation_oracle import ManipulationOracle, Request
+from utak.planner.carrying.open_facts import open_fact_against
+from utak.planner.deciding.transport import Transporter
+from utak.planner.deciding.verification import (
     Verifier,
     check_elsewhere,
     look_at_contradiction,
     look_before_grasp,
     unseen_beyond_door,
 )
-from planner.sights.frontiers import FOVEA_RANGE
-from planner.stages import Stage
+from utak.planner.sights.frontiers import FOVEA_RANGE
+from utak.planner.stages import Stage
+
 from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import utak_in
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, turn_of

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import shapely
 import shapely.affinity
+from utak.kb.language.reader import facts_from_text
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.world.corners import Corner
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.carrying.plan_executor import PlanExecutor
+from utak.planner.goals.object_goals import goal_placement
+from utak.planner.goals.placement import Placement, meets_end
 
-from kb.language.reader import facts_from_text
-from kb.mapping.patch import patch_of_polygon
-from kb.world.corners import Corner
-from kb.world.model import Node, WorldModel
-from planner.carrying.plan_executor import PlanExecutor
-from planner.goals.object_goals import goal_placement
-from planner.goals.placement import Placement, meets_end
 from tests.kb.drawings import known_model, unclear
 from tests.planner.situations import known_situation, situation_of
 

@@ -7,14 +7,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.geometry.manipulation.goals import End
+from utak.geometry.manipulation.plan_carrying import Inside
+from utak.kb.world.model import Node, WorldModel
+from utak.planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
+from utak.planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor, spread_into_unseen
+from utak.planner.screen.projection import UNSEEN_LEVEL, indices_to_mask
+from utak.planner.situation import Situation
 
-from geometry.manipulation.goals import End
-from geometry.manipulation.plan_carrying import Inside
-from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
-from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor, spread_into_unseen
-from planner.screen.projection import UNSEEN_LEVEL, indices_to_mask
-from planner.situation import Situation
 from tests.kb.drawings import known_model, unclear
 from tests.planner.situations import situation_of
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 import shapely
 import shapely.affinity
+from utak.kb.world.rooms import Rooms
+from utak.planner.goals.origins import Origins
+from utak.planner.situation import Situation
 
-from kb.world.rooms import Rooms
-from planner.goals.origins import Origins
-from planner.situation import Situation
 from tests.kb.drawings import known_model
 from tests.planner.situations import BESIDE_A_THING, situation_of
 

@@ -5,19 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from utak.kb.language.diagnostics import SourceSpan
+from utak.kb.language.terms import Symbol
+from utak.kb.task.task import Task
+from utak.kb.world.rooms import rooms_of
+from utak.planner.agenda.decider import Decider
+from utak.planner.navigation.fewest_moves import ASSUMED_MOVES, MOVE_COST, SQUARE_COST, FewestMoves
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import one_move_squares
+from utak.planner.screen.projection import CostMaps
+from utak.planner.screen.sweeps import sweep_is_free
+from utak.planner.screen.unseen_gain import GAIN_REACH
+from utak.planner.sights.frontiers import best_views
 
-from kb.language.diagnostics import SourceSpan
-from kb.language.terms import Symbol
-from kb.task.task import Task
-from kb.world.rooms import rooms_of
-from planner.agenda.decider import Decider
-from planner.navigation.fewest_moves import ASSUMED_MOVES, MOVE_COST, SQUARE_COST, FewestMoves
-from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import one_move_squares
-from planner.screen.projection import CostMaps
-from planner.screen.sweeps import sweep_is_free
-from planner.screen.unseen_gain import GAIN_REACH
-from planner.sights.frontiers import best_views
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 

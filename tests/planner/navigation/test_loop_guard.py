@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+from utak.kb.body import Move, Push, Release
+from utak.planner.navigation.loop_guard import LOOP_COST, LoopGuard
+from utak.planner.navigation.subgoals import Subgoal
 
-from kb.body import Move, Push, Release
-from planner.navigation.loop_guard import LOOP_COST, LoopGuard
-from planner.navigation.subgoals import Subgoal
 from tests.kb.drawings import known_model
 from tests.planner.screen.test_projection import HALL
 

@@ -5,12 +5,12 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.geometry.manipulation.goals import At, Inside
+from utak.geometry.motion.se2 import Pose, Translate
+from utak.planner.oracles.carry import CarryOracle, Certainty
+from utak.planner.oracles.spots import corner_spots, kept_way_of, spots, turned_corner_outlines
 
 from benchmarks.worlds.drawn import drawn_problem, drawn_situation
-from geometry.manipulation.goals import At, Inside
-from geometry.motion.se2 import Pose, Translate
-from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.spots import corner_spots, kept_way_of, spots, turned_corner_outlines
 from tests.planner.situations import known_situation
 
 ROOM = [

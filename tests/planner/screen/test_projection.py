@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from kb.mapping.occupancy import FREE, OPEN
-from kb.world.model import WorldModel
-from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
-from planner.navigation.routes import choose_route, find_routes
-from planner.navigation.subgoals import Subgoal, choose
-from planner.screen.moves import (
+from utak.kb.mapping.occupancy import FREE, OPEN
+from utak.kb.world.model import WorldModel
+from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
+from utak.planner.navigation.routes import choose_route, find_routes
+from utak.planner.navigation.subgoals import Subgoal, choose
+from utak.planner.screen.moves import (
     CARRYING_PACE,
     LEEWAY_TOLERANCE,
     TIGHT_MOVE_LENGTH,
@@ -24,9 +23,16 @@ from planner.screen.moves import (
     next_move,
     one_move_squares,
 )
-from planner.screen.projection import MAX_TRUSTED_PROBABILITY, MIN_DOUBTFUL_PROBABILITY, UNSEEN_LEVEL, CostMaps, dilate
-from planner.screen.sweeps import line_sweep_is_free, swept_offsets
-from planner.sights import frontiers
+from utak.planner.screen.projection import (
+    MAX_TRUSTED_PROBABILITY,
+    MIN_DOUBTFUL_PROBABILITY,
+    UNSEEN_LEVEL,
+    CostMaps,
+    dilate,
+)
+from utak.planner.screen.sweeps import line_sweep_is_free, swept_offsets
+from utak.planner.sights import frontiers
+
 from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import random_room
 from tests.tables import few

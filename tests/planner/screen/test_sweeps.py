@@ -7,8 +7,7 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-
-from planner.screen.sweeps import line_sweep_is_free, squares_along, sweep_is_free, swept_offsets
+from utak.planner.screen.sweeps import line_sweep_is_free, squares_along, sweep_is_free, swept_offsets
 
 whole = st.integers(-9, 9)
 

@@ -4,18 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.language.reader import facts_from_text
+from utak.kb.mapping.occupancy import OCCUPIED, OPEN
+from utak.kb.world.corners import Corner
+from utak.planner.goals.corner_goal import approach_for_goals
+from utak.planner.navigation.fewest_moves import FewestMoves
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import CARRYING_PACE, one_move_squares
+from utak.planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, dilate
+from utak.planner.sights.frontiers import FOVEA_RANGE, MIDDLE_ZONE_RANGE
+from utak.planner.sights.viewpoints import MIN_APPROACH_PROBABILITY, TO_REACH, TO_TAKE, Approach, inspection_squares
 
-from geometry.raster.components import with_edge_neighbours
-from kb.language.reader import facts_from_text
-from kb.mapping.occupancy import OCCUPIED, OPEN
-from kb.world.corners import Corner
-from planner.goals.corner_goal import approach_for_goals
-from planner.navigation.fewest_moves import FewestMoves
-from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import CARRYING_PACE, one_move_squares
-from planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, dilate
-from planner.sights.frontiers import FOVEA_RANGE, MIDDLE_ZONE_RANGE
-from planner.sights.viewpoints import MIN_APPROACH_PROBABILITY, TO_REACH, TO_TAKE, Approach, inspection_squares
 from tests.kb.drawings import drawing, known_model
 from tests.planner.situations import situation_of
 

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.world.model import WorldModel
-from planner.screen.projection import CostMaps
-from planner.sights.walls import (
+from utak.kb.world.model import WorldModel
+from utak.planner.screen.projection import CostMaps
+from utak.planner.sights.walls import (
     ALL_WALLS,
     FeelingScope,
     WallKind,
@@ -16,6 +15,7 @@ from planner.sights.walls import (
     unfelt_walls,
     walls_in_question,
 )
+
 from tests.kb.drawings import known_model
 from tests.planner.situations import all_felt
 

@@ -4,10 +4,9 @@ import math
 from dataclasses import replace
 
 import pytest
-
-from kb.body import Grasp, Move
-from planner.situation import Situation
-from planner.skills.into_corner import (
+from utak.kb.body import Grasp, Move
+from utak.planner.situation import Situation
+from utak.planner.skills.into_corner import (
     HALT_DISTANCE,
     PRESS_LENGTH,
     IntoCorner,
@@ -15,7 +14,8 @@ from planner.skills.into_corner import (
     halting_place,
     lies_straight,
 )
-from planner.stages import Stage
+from utak.planner.stages import Stage
+
 from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import situation_of

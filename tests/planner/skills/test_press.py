@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import pytest
 import shapely
+from utak.geometry.manipulation.goals import InCorner
+from utak.geometry.motion.se2 import Translate
+from utak.kb.body import Push
+from utak.kb.world.model import Node
+from utak.planner.goals.corner_goal import WALL_DEPTH, _wall_pushes
+from utak.planner.goals.placement import Placement
+from utak.planner.situation import Situation
+from utak.planner.skills.press import Presser
 
-from geometry.manipulation.goals import InCorner
-from geometry.motion.se2 import Translate
-from kb.body import Push
-from kb.world.model import Node
-from planner.goals.corner_goal import WALL_DEPTH, _wall_pushes
-from planner.goals.placement import Placement
-from planner.situation import Situation
-from planner.skills.press import Presser
 from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import BESIDE_A_THING, situation_of

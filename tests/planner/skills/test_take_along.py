@@ -9,29 +9,29 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from utak.geometry.manipulation.goals import Inside
+from utak.geometry.manipulation.plan_carrying import Leg
+from utak.geometry.manipulation.workspace import Workspace
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.kb.body import Grasp, Move, Push, Release
+from utak.kb.language.reader import facts_from_text
+from utak.kb.mapping.patch import Patch
+from utak.kb.world.model import Node
+from utak.planner.advice import Act, See
+from utak.planner.carrying.plan_executor import Advice, PlanExecutor
+from utak.planner.carrying.remaining_plan import RemainingPlan
+from utak.planner.deciding.pursuit import Pursuer
+from utak.planner.deciding.transport import Transporter
+from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.goals.placement import Placement, to_view_frame
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.projection import SquareIndices
+from utak.planner.sights.frontiers import Viewpoint
+from utak.planner.situation import Situation
+from utak.planner.skills.take_along import VIEWPOINT_RADIUS, detour_push, escape_push, region_near, shortest_push
+from utak.planner.stages import Stage
+from utak.planner.subgoal_kind import SubgoalKind
 
-from geometry.manipulation.goals import Inside
-from geometry.manipulation.plan_carrying import Leg
-from geometry.manipulation.workspace import Workspace
-from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.body import Grasp, Move, Push, Release
-from kb.language.reader import facts_from_text
-from kb.mapping.patch import Patch
-from kb.world.model import Node
-from planner.advice import Act, See
-from planner.carrying.plan_executor import Advice, PlanExecutor
-from planner.carrying.remaining_plan import RemainingPlan
-from planner.deciding.pursuit import Pursuer
-from planner.deciding.transport import Transporter
-from planner.decision import Decision, TaskVerdict
-from planner.goals.placement import Placement, to_view_frame
-from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import SquareIndices
-from planner.sights.frontiers import Viewpoint
-from planner.situation import Situation
-from planner.skills.take_along import VIEWPOINT_RADIUS, detour_push, escape_push, region_near, shortest_push
-from planner.stages import Stage
-from planner.subgoal_kind import SubgoalKind
 from tests.kb.drawings import known_model
 from tests.planner.situations import Tools, situation_of, tools_with, turn_of
 

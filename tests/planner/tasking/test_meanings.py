@@ -5,19 +5,19 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from utak.kb.language.reader import facts_from_text
+from utak.kb.task.binding import Reconciliation, as_well_by_parameter
+from utak.kb.task.task import Task
+from utak.planner.goals.object_goals import goal_placement
+from utak.planner.goals.robot_goals import destination
+from utak.planner.oracles.carry import CarryOracle
+from utak.planner.situation import Situation
+from utak.planner.stages import parameters_that_keep_meaning
+from utak.planner.tasking.intention import Intention, with_meanings
+from utak.planner.tasking.rule_effects import rules_without_plan
+from utak.planner.tasking.search import MadePlan, make_plan
+from utak.planner.tasking.setting import WhereGoalsHold, problem_of
 
-from kb.language.reader import facts_from_text
-from kb.task.binding import Reconciliation, as_well_by_parameter
-from kb.task.task import Task
-from planner.goals.object_goals import goal_placement
-from planner.goals.robot_goals import destination
-from planner.oracles.carry import CarryOracle
-from planner.situation import Situation
-from planner.stages import parameters_that_keep_meaning
-from planner.tasking.intention import Intention, with_meanings
-from planner.tasking.rule_effects import rules_without_plan
-from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.setting import WhereGoalsHold, problem_of
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_wishes import origin, stage_of
 

@@ -5,21 +5,21 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from utak.geometry.manipulation.goals import End, Inside
+from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.body import Grasp
+from utak.kb.language.reader import facts_from_text
+from utak.planner.goals.object_goals import goal_placement
+from utak.planner.goals.robot_goals import destination
+from utak.planner.oracles.carry import CarryOracle
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage
+from utak.planner.tasking.rule_effects import doors_led_round, rules_about_doors, rules_that_close, rules_without_plan
+from utak.planner.tasking.search import MadePlan, make_plan
+from utak.planner.tasking.setting import WhereGoalsHold, problem_of
+from utak.simulator.scenario.settings import Settings
 
 from benchmarks.worlds.drawn import drawn_problem
-from geometry.manipulation.goals import End, Inside
-from geometry.raster.runs import mask_to_polygon
-from kb.body import Grasp
-from kb.language.reader import facts_from_text
-from planner.goals.object_goals import goal_placement
-from planner.goals.robot_goals import destination
-from planner.oracles.carry import CarryOracle
-from planner.situation import Situation
-from planner.stages import Stage
-from planner.tasking.rule_effects import doors_led_round, rules_about_doors, rules_that_close, rules_without_plan
-from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.setting import WhereGoalsHold, problem_of
-from simulator.scenario.settings import Settings
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_search import SWAPPED, moved

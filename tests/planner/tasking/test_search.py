@@ -6,18 +6,18 @@ from itertools import pairwise
 
 import pytest
 import shapely
+from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
+from utak.geometry.motion.se2 import Pose
+from utak.kb.language.vocabulary import ROBOT
+from utak.planner.goals.placement import to_view_frame
+from utak.planner.oracles.carry import CarryOracle, Certainty
+from utak.planner.oracles.problem import PlacedGoal, TaskProblem
+from utak.planner.situation import Situation
+from utak.planner.tasking.search import MadePlan, make_plan
+from utak.planner.tasking.task_plan import RefutedStep, TaskPlan
+from utak.planner.under_way import UNDER_WAY
 
 from benchmarks.worlds.drawn import drawn_problem
-from geometry.manipulation.goals import At, End, Inside, is_goal_met
-from geometry.motion.se2 import Pose
-from kb.language.vocabulary import ROBOT
-from planner.goals.placement import to_view_frame
-from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.problem import PlacedGoal, TaskProblem
-from planner.situation import Situation
-from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.task_plan import RefutedStep, TaskPlan
-from planner.under_way import UNDER_WAY
 from tests.planner.situations import known_situation
 
 WALL = "b" * 24

@@ -4,18 +4,18 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.vocabulary import ROBOT
+from utak.kb.task.task import Task
+from utak.planner.goals.object_goals import goal_placement
+from utak.planner.goals.robot_goals import destination
+from utak.planner.oracles.carry import CarryOracle
+from utak.planner.situation import Situation
+from utak.planner.stages import Stage, stages
+from utak.planner.tasking.intention import Intention
+from utak.planner.tasking.search import MadePlan, make_plan
+from utak.planner.tasking.setting import WhereGoalsHold, goal_of_place, problem_of, wish_of_place
 
-from kb.language.reader import facts_from_text
-from kb.language.vocabulary import ROBOT
-from kb.task.task import Task
-from planner.goals.object_goals import goal_placement
-from planner.goals.robot_goals import destination
-from planner.oracles.carry import CarryOracle
-from planner.situation import Situation
-from planner.stages import Stage, stages
-from planner.tasking.intention import Intention
-from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.setting import WhereGoalsHold, goal_of_place, problem_of, wish_of_place
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_search import SWAPPED, WALLED_IN
 

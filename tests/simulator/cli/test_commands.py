@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from simulator.cli.main import main
+from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -19,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[3]
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a scenario that the scripted robot will run."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
 

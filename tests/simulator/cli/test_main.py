@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from planner.navigation.routes import PATH_FINDERS
-from simulator.cli.main import main
-from simulator.scenario.settings import PATH_CHOICES
+from utak.planner.navigation.routes import PATH_FINDERS
+from utak.simulator.cli.main import main
+from utak.simulator.scenario.settings import PATH_CHOICES
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -20,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[3]
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a scenario that the scripted robot will run."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
 
@@ -110,22 +109,24 @@ def test_interrupted(scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
 
 
 def test_show_ends_quietly_when_its_reader_ends(scene: Path) -> None:
-    command = f"{sys.executable} -m simulator.cli show {scene} | true"
+    command = f"{sys.executable} -m utak.simulator.cli show {scene} | true"
     done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, check=False)
     assert b"Traceback" not in done.stderr
     assert b"Broken" not in done.stderr
 
 
 def test_help_imports_nothing_heavy() -> None:
-    code = "import sys; from simulator.cli.main import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
+    code = (
+        "import sys; from utak.simulator.cli.main import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
+    )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    heavy = {"numpy", "shapely", "clingo", "networkx", "numba", "multiprocessing", "difflib", "geometry"}
+    heavy = {"numpy", "shapely", "clingo", "networkx", "numba", "multiprocessing", "difflib", "utak.geometry"}
     assert not heavy & set(done.stderr.split())
 
 
 def test_installed_name_and_environment() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "simulator.cli", "--help"],
+        [sys.executable, "-m", "utak.simulator.cli", "--help"],
         cwd=ROOT,
         env=os.environ | {"NO_COLOR": "1"},
         capture_output=True,

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 from random_scenes import write_scene
-
-from kb.language import operating_system
+from utak.kb.language import operating_system
 
 ROOT = Path(__file__).resolve().parents[3]
 HIDDEN = """
@@ -46,7 +45,7 @@ def hidden(system: str, code: str, *arguments: str) -> "subprocess.CompletedProc
 UTAK = """
 from tests_of import scripted_robot
 scripted_robot.install()
-from simulator.cli.main import main
+from utak.simulator.cli.main import main
 sys.exit(main(sys.argv[1:]))
 """.replace("from tests_of import", f"sys.path.insert(0, {str(Path(__file__).parents[1])!r}); import")
 
@@ -68,7 +67,7 @@ def test_the_commands_work(system: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_a_worker_answers_without_limits(system: str) -> None:
-    code = "from kb.reasoning.query_worker import main; main()"
+    code = "from utak.kb.reasoning.query_worker import main; main()"
     request = '{"facts": [["node", "o1"]], "query": "node(X)", "rules": []}\n'
     modules, names = SYSTEMS[system]
     before = HIDDEN.format(modules=modules, names=names, root=str(ROOT), more=MORE[system])
@@ -85,7 +84,7 @@ def test_a_worker_answers_without_limits(system: str) -> None:
 
 
 def test_missing_features_are_listed() -> None:
-    code = "from kb.language.operating_system import missing_features; print(*missing_features(), sep='\\n')"
+    code = "from utak.kb.language.operating_system import missing_features; print(*missing_features(), sep='\\n')"
     assert "memory of a question is not limited" in hidden("windows", code).stdout
     assert "not locked" in hidden("windows", code).stdout
     assert hidden("macos", code).stdout.strip() == ""

@@ -12,9 +12,9 @@ import scripted_robot
 from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import write_scene
+from utak.simulator.cli.main import main
+from utak.simulator.terminal.streams import GuardedStream, StreamError, escape_controls
 
-from simulator.cli.main import main
-from simulator.terminal.streams import GuardedStream, StreamError, escape_controls
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -13,13 +13,12 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.language.source_text import lies_outside, read_source
-from simulator.cli.main import main
-from simulator.episode.schema import complaints
-from simulator.terminal import exits
-from simulator.testing.grades import as_csv
-from simulator.testing.record import Wish, without_run
+from utak.kb.language.source_text import lies_outside, read_source
+from utak.simulator.cli.main import main
+from utak.simulator.episode.schema import complaints
+from utak.simulator.terminal import exits
+from utak.simulator.testing.grades import as_csv
+from utak.simulator.testing.record import Wish, without_run
 
 SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
 
@@ -27,7 +26,7 @@ SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a scenario that passes its test with the scripted robot."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     folder = write_scene(tmp_path / "suite" / "good", 1)
     (folder / "expect.lp").write_text("fails.")

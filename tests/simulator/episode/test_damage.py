@@ -16,13 +16,12 @@ import scripted_robot
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
-
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.cli.main import main
-from simulator.episode.episode import read_episode
-from simulator.run.story import RecordedStory
-from simulator.scenario.scenario import read_scenario
-from simulator.terminal.action_in_words import describe
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import read_episode
+from utak.simulator.run.story import RecordedStory
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.terminal.action_in_words import describe
 
 PLACE = re.compile(r"ep\.jsonl:\d+:\d+-\d+: error: ")
 
@@ -32,7 +31,7 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     """Return the lines of a short episode."""
     place = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+        patch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
         scripted_robot.install()
         assert main(["run", str(write_scene(place / "s", 1)), "--max-steps", "3", "--log", str(place / "e")]) == 75
     return [json.loads(line) for line in (place / "e").read_text().splitlines()]

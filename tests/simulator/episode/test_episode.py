@@ -16,10 +16,9 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.cli.main import main
-from simulator.episode.episode import Episode, EpisodeLog, encode, read_episode
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import Episode, EpisodeLog, encode, read_episode
 
 ROOT = Path(__file__).resolve().parents[3]
 JUDGE = Path(os.environ.get("UTAK_JUDGE", ROOT.parent / "shared" / "judge" / "judge.py"))
@@ -28,7 +27,7 @@ JUDGE = Path(os.environ.get("UTAK_JUDGE", ROOT.parent / "shared" / "judge" / "ju
 @pytest.fixture(autouse=True)
 def scripted(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Let the scripted robot do every run in this module."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     yield
 

@@ -10,12 +10,11 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.language.diagnostics import CannotOpenError
-from simulator.cli.main import main
-from simulator.episode.episode import EpisodeLog, read_episode
-from simulator.episode.output_files import is_episode, is_junit, is_svg, write_whole
-from simulator.replay.page import is_page
+from utak.kb.language.diagnostics import CannotOpenError
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import EpisodeLog, read_episode
+from utak.simulator.episode.output_files import is_episode, is_junit, is_svg, write_whole
+from utak.simulator.replay.page import is_page
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -23,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[3]
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a scenario that the scripted robot will run."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
 

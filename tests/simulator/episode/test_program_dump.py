@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from kb.language.diagnostics import BadInputError
-from simulator.cli.main import main
-from simulator.episode.episode import read_episode
-from simulator.episode.program_dump import ProgramDump, dump_episode
+from utak.kb.language.diagnostics import BadInputError
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import read_episode
+from utak.simulator.episode.program_dump import ProgramDump, dump_episode
 
 ROOT = Path(__file__).resolve().parents[3]
 RUNS = (("push_square_next_room", "0"), ("go_northeast_rooms", "0.05"))  # scenario and noise

@@ -8,14 +8,13 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-
-from kb.body import DIRECTIONS
-from kb.evidence.reason import ReasonKind
-from kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
-from simulator.cli.commands.schema import SCHEMA_NAMES
-from simulator.cli.main import main
-from simulator.episode.schema import EPISODE_LINES, EPISODE_VERSION, accepts, definitions
-from simulator.scenario.settings import PATH_CHOICES
+from utak.kb.body import DIRECTIONS
+from utak.kb.evidence.reason import ReasonKind
+from utak.kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
+from utak.simulator.cli.commands.schema import SCHEMA_NAMES
+from utak.simulator.cli.main import main
+from utak.simulator.episode.schema import EPISODE_LINES, EPISODE_VERSION, accepts, definitions
+from utak.simulator.scenario.settings import PATH_CHOICES
 
 jsonschema = pytest.importorskip("jsonschema")
 ROOT = Path(__file__).resolve().parents[3]

@@ -3,16 +3,16 @@
 from pathlib import Path
 
 import pytest
+from utak.kb.reasoning.query import QueryEngine
+from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import read_episode
+from utak.simulator.explaining.missing_rules import missing_rules
+from utak.simulator.repl.commands import PROMPT_COMMANDS
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.repl.printer import Printer
+from utak.simulator.run.recorded_story import RecordedStory
 
-from kb.reasoning.query import QueryEngine
-from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
-from simulator.cli.main import main
-from simulator.episode.episode import read_episode
-from simulator.explaining.missing_rules import missing_rules
-from simulator.repl.commands import PROMPT_COMMANDS
-from simulator.repl.dialogue import Dialogue
-from simulator.repl.printer import Printer
-from simulator.run.recorded_story import RecordedStory
 from tests.simulator.replay.replay_episodes import body_of
 from utak.episode import Episode
 

@@ -3,12 +3,11 @@
 from pathlib import Path
 
 import pytest
-
-from kb.evidence.reason import Depth, ReasonKind
-from kb.language.atoms import atom_parts
-from simulator.cli.main import main
-from simulator.episode.episode import Episode, read_episode
-from simulator.explaining.questions import Questions, questions_of_episode
+from utak.kb.evidence.reason import Depth, ReasonKind
+from utak.kb.language.atoms import atom_parts
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import Episode, read_episode
+from utak.simulator.explaining.questions import Questions, questions_of_episode
 
 ROOT = Path(__file__).resolve().parents[3]
 CLASSES = ("square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc")  # those that exclude each other

@@ -12,19 +12,18 @@ import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-
-from geometry.raster.contours import outline
-from kb.language.diagnostics import BadInputError
-from kb.language.source_text import Source
-from simulator.cli.main import main
-from simulator.importing.imported import ImportOptions
-from simulator.importing.pgm import parse_pgm
-from simulator.importing.raster import count_corners
-from simulator.importing.ros_map import cell_of, default_scale
-from simulator.importing.ros_map import read as read_ros
-from simulator.importing.ros_yaml import parse_head
-from simulator.scenario.scenario import Scenario, read_scenario
-from simulator.world.world import World
+from utak.geometry.raster.contours import outline
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.source_text import Source
+from utak.simulator.cli.main import main
+from utak.simulator.importing.imported import ImportOptions
+from utak.simulator.importing.pgm import parse_pgm
+from utak.simulator.importing.raster import count_corners
+from utak.simulator.importing.ros_map import cell_of, default_scale
+from utak.simulator.importing.ros_map import read as read_ros
+from utak.simulator.importing.ros_yaml import parse_head
+from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.world.world import World
 
 MOVINGAI = Path("/work/shared/data/movingai")
 YAML = (

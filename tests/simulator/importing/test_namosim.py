@@ -10,10 +10,9 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-
-from simulator.cli.main import main
-from simulator.importing.svg_path import SvgError, parse_path, parse_transform
-from simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.cli.main import main
+from utak.simulator.importing.svg_path import SvgError, parse_path, parse_transform
+from utak.simulator.scenario.scenario import Scenario, read_scenario
 
 SHARED = Path("/work/shared/data/namosim")
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 90">\n'

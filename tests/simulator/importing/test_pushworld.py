@@ -8,12 +8,11 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError
-from simulator.cli.main import main
-from simulator.importing.imported import ImportOptions
-from simulator.importing.pushworld import read
-from simulator.scenario.scenario import Scenario, read_scenario
+from utak.kb.language.diagnostics import BadInputError
+from utak.simulator.cli.main import main
+from utak.simulator.importing.imported import ImportOptions
+from utak.simulator.importing.pushworld import read
+from utak.simulator.scenario.scenario import Scenario, read_scenario
 
 SHARED = Path("/work/shared/data")
 CONVERTED = {

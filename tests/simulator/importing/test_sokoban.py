@@ -8,10 +8,9 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-
-from simulator.cli.main import main
-from simulator.importing.sokoban import _cheapest_owners
-from simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.cli.main import main
+from utak.simulator.importing.sokoban import _cheapest_owners
+from utak.simulator.scenario.scenario import Scenario, read_scenario
 
 BOXOBAN = Path("/work/shared/data/sokoban/boxoban_hard_000.txt")
 LEVEL = """\

@@ -3,9 +3,8 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from kb.language.vocabulary import BELIEF_PREDICATES, SHAPE_CLASSES
-from simulator.repl.completion import completions
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, SHAPE_CLASSES
+from utak.simulator.repl.completion import completions
 
 COMMANDS = ["?-", ";", "assume", "back", "diff", "facts", "goal", "goto", "help", "quit", "run", "since", "step", "why"]
 FACTS = ["kind(o1,object,90).", "kind(o12,object,30).", "in(org,r1).", "in(o1,r2).", "door(d1).", "bound(x,o1)."]

@@ -12,23 +12,22 @@ import scripted_robot
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
-
-from kb.reasoning.query import QueryEngine
-from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
-from simulator.cli.main import main
-from simulator.repl.commands import PROMPT_COMMANDS
-from simulator.repl.dialogue import Dialogue
-from simulator.repl.explaining import Explainer
-from simulator.repl.printer import Printer
-from simulator.repl.statements import StatementBuffer
-from simulator.run.story import open_story
-from simulator.scenario.settings import Settings
+from utak.kb.reasoning.query import QueryEngine
+from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
+from utak.simulator.cli.main import main
+from utak.simulator.repl.commands import PROMPT_COMMANDS
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.repl.explaining import Explainer
+from utak.simulator.repl.printer import Printer
+from utak.simulator.repl.statements import StatementBuffer
+from utak.simulator.run.story import open_story
+from utak.simulator.scenario.settings import Settings
 
 
 @pytest.fixture
 def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the scripted robot do every run."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
 
 

@@ -3,8 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simulator.repl.picture import DOOR_MARK, draw_belief
+from utak.simulator.repl.picture import DOOR_MARK, draw_belief
 
 
 def ring(node: str, *corners: tuple[int, int]) -> list[str]:

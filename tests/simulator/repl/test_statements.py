@@ -3,8 +3,13 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simulator.repl.statements import MAX_STATEMENT_CHARACTERS, StatementBuffer, is_query, query_end, without_comment
+from utak.simulator.repl.statements import (
+    MAX_STATEMENT_CHARACTERS,
+    StatementBuffer,
+    is_query,
+    query_end,
+    without_comment,
+)
 
 COMMANDS = ["assume", "diff", "facts", "goal", "help", "quit", "run", "since", "step"]
 

@@ -12,8 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-
-from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
+from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 
 pty = pytest.importorskip("pty")  # not on Windows
 ROOT = Path(__file__).resolve().parents[3]
@@ -35,7 +34,7 @@ class Terminal:
 
     def __init__(self, story: Path, state: Path, **environment: str) -> None:
         self.handle, slave = pty.openpty()
-        command = [sys.executable, str(ROOT / "utak_command.py"), "", "simulator.cli", "repl", str(story)]
+        command = [sys.executable, str(ROOT / "utak" / "launcher.py"), "", "utak.simulator.cli", "repl", str(story)]
         given = {"XDG_STATE_HOME": str(state), "TERM": "xterm", "PROMPT_TOOLKIT_NO_CPR": "1", **environment}
         self.process = subprocess.Popen(
             command,
@@ -159,7 +158,7 @@ def test_an_answer_that_goes_elsewhere_has_no_prompt_in_it(tmp_path: Path) -> No
     for name, text in NEW_SCENARIO_FILES.items():
         (tmp_path / name).write_text(text)
     handle, slave = pty.openpty()
-    command = [sys.executable, str(ROOT / "utak_command.py"), "", "simulator.cli", "repl", str(tmp_path)]
+    command = [sys.executable, str(ROOT / "utak" / "launcher.py"), "", "utak.simulator.cli", "repl", str(tmp_path)]
     with subprocess.Popen(command, stdin=slave, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         os.close(slave)
         os.write(handle, b"node(org).\nquit\n")

@@ -4,8 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
-
-from simulator.episode.episode import Episode
+from utak.simulator.episode.episode import Episode
 
 sys.path.insert(0, str(Path(__file__).parent))
 

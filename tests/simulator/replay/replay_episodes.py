@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 from typing import Any
 
-from simulator.cli.main import main
-from simulator.episode.episode import Episode, read_episode
-from simulator.replay.page import inflated
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import Episode, read_episode
+from utak.simulator.replay.page import inflated
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = (

@@ -2,8 +2,7 @@
 
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simulator.replay.changes import changes
+from utak.simulator.replay.changes import changes
 
 FACTS = st.lists(
     st.builds(

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from simulator.episode.episode import Episode
-from simulator.replay.events import episode_events
+from utak.simulator.episode.episode import Episode
+from utak.simulator.replay.events import episode_events
 
 
 def line(held: str | None = None, facts: tuple[str, ...] = (), **belief: Any) -> dict[str, Any]:

@@ -13,15 +13,14 @@ from types import SimpleNamespace
 
 import pytest
 from replay_episodes import HOSTILE, ROOT, body_of, hostile
-
-from simulator.cli.main import main
-from simulator.episode.episode import Episode, encode
-from simulator.explaining.trees import trees_of_episode
-from simulator.replay.page import replay_page
-from simulator.replay.transcript import transcript
-from simulator.replay.watching import TableWatch
-from simulator.scenario.scenario import read_any_world as read_world
-from simulator.terminal.streams import GuardedStream
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import Episode, encode
+from utak.simulator.explaining.trees import trees_of_episode
+from utak.simulator.replay.page import replay_page
+from utak.simulator.replay.transcript import transcript
+from utak.simulator.replay.watching import TableWatch
+from utak.simulator.scenario.scenario import read_any_world as read_world
+from utak.simulator.terminal.streams import GuardedStream
 
 
 def write(folder: Path, episode: Episode) -> str:
@@ -133,7 +132,7 @@ def test_moving_pictures(carried: tuple[Path, Episode], tmp_path: Path, capsys: 
             picture.seek(number)
             frames.append(picture.convert("RGB").tobytes())
     assert frames[0] != frames[1]
-    from simulator.replay.gif import animation
+    from utak.simulator.replay.gif import animation
 
     assert animation(hostile(carried[1])).startswith(b"GIF89a")
     (tmp_path / "notes").write_text("mine")
@@ -144,7 +143,7 @@ def test_moving_pictures_without_pillow_say_what_is_missing(carried: tuple[Path,
     """Pillow is hidden from a process of its own."""
     program = (
         "import sys; sys.modules['PIL'] = None; sys.path.insert(0, sys.argv[1])\n"
-        "from simulator.cli.main import main; sys.exit(main(sys.argv[2:]))"
+        "from utak.simulator.cli.main import main; sys.exit(main(sys.argv[2:]))"
     )
     path = tmp_path / "run.gif"
     command = [sys.executable, "-c", program, str(ROOT), "replay", str(carried[0]), "--gif", str(path)]
@@ -190,6 +189,6 @@ def test_every_part_of_the_page_is_in_the_package() -> None:
     """The parts lie within a package, which hatchling takes as a whole; `.ci/run` tries the built wheel."""
     from importlib.resources import files
 
-    parts = files("simulator.replay") / "page_parts"
+    parts = files("utak.simulator.replay") / "page_parts"
     assert {part.name for part in parts.iterdir()} >= {"page.html", "body.html", "style.css", "player.js", "episode.js"}
     assert all(part.read_text(encoding="utf-8") for part in parts.iterdir())

@@ -14,16 +14,15 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.reasoning.query import QueryEngine
-from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
-from simulator.repl.commands import PROMPT_COMMANDS
-from simulator.repl.dialogue import Dialogue
-from simulator.repl.printer import Printer
-from simulator.run.interrupts import defer_interrupt
-from simulator.run.live_story import LiveStory
-from simulator.run.story import open_story
-from simulator.scenario.settings import Settings
+from utak.kb.reasoning.query import QueryEngine
+from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
+from utak.simulator.repl.commands import PROMPT_COMMANDS
+from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.repl.printer import Printer
+from utak.simulator.run.interrupts import defer_interrupt
+from utak.simulator.run.live_story import LiveStory
+from utak.simulator.run.story import open_story
+from utak.simulator.scenario.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -39,7 +38,7 @@ def ctrl_c_interrupts() -> Iterator[None]:
 @pytest.fixture
 def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the scripted robot do every run."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
 
 
@@ -188,7 +187,7 @@ def test_ctrl_c_soon_after_the_start_gives_no_traceback(tmp_path: Path) -> None:
     code = f"""
 import os, signal, sys
 sys.path.insert(0, {str(ROOT)!r})
-from utak_command import exit_at_ctrl_c, main
+from utak.launcher import exit_at_ctrl_c, main
 left, sys.argv = int(sys.argv[2]), ['utak', 'run', sys.argv[1]]
 def press(frame, event, argument):
     global left
@@ -228,7 +227,7 @@ def test_an_import_that_is_under_way_ends_before_the_interrupt(tmp_path: Path) -
     )
     code = (
         f"import signal, sys, time; sys.path[:0] = [{str(ROOT)!r}, {str(tmp_path)!r}]\n"
-        "from simulator.cli.main import _Interrupts\n"
+        "from utak.simulator.cli.main import _Interrupts\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "_Interrupts().take()\n"
         "try:\n    import interrupted_module\n    time.sleep(20)\n"
@@ -242,7 +241,7 @@ def test_an_import_that_is_under_way_ends_before_the_interrupt(tmp_path: Path) -
 def test_objects_whose_making_was_interrupted_leave_no_traceback() -> None:
     code = (
         f"import os, signal, sys; sys.path[:0] = [{str(ROOT)!r}]\n"
-        "from simulator.cli.main import _Interrupts\n"
+        "from utak.simulator.cli.main import _Interrupts\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "_Interrupts().take()\n"
         "class Handle:\n"

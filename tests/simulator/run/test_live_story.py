@@ -8,16 +8,15 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.language.diagnostics import BadInputError
-from kb.task.task import Task
-from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
-from simulator.episode.episode import EpisodeLog, encode
-from simulator.run.live_story import MAX_KEPT_SESSIONS, LiveStory
-from simulator.run.robots import make_robot
-from simulator.run.session import CannotAdoptError, Session
-from simulator.scenario.scenario import Scenario, read_scenario
-from simulator.scenario.settings import Settings
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.task.task import Task
+from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
+from utak.simulator.episode.episode import EpisodeLog, encode
+from utak.simulator.run.live_story import MAX_KEPT_SESSIONS, LiveStory
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import CannotAdoptError, Session
+from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.scenario.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[3]
 

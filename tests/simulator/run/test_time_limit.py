@@ -12,14 +12,13 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.task.task import Task
-from simulator.cli.main import main
-from simulator.episode.episode import EpisodeLog, read_episode
-from simulator.run.session import Session
-from simulator.run.time_limit import TimeLimit
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
+from utak.kb.task.task import Task
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import EpisodeLog, read_episode
+from utak.simulator.run.session import Session
+from utak.simulator.run.time_limit import TimeLimit
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 ALL_COMMANDS = 30  # of the scripted robot
 
@@ -31,7 +30,7 @@ def scripted(body: Any, task: Task, settings: Settings) -> Any:
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a scenario that the scripted robot will run."""
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
 

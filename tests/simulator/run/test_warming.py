@@ -10,8 +10,7 @@ from pathlib import Path
 from shutil import copytree, ignore_patterns
 
 import pytest
-
-from simulator.run import warming
+from utak.simulator.run import warming
 
 ROOT = Path(__file__).resolve().parents[3]
 COMPILED = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
@@ -73,7 +72,7 @@ def test_the_first_run_announces_the_compilation(monkeypatch) -> None:
 
 
 def test_the_announcement_is_printed_once_in_a_process() -> None:
-    code = "from simulator.run.warming import THIS_INSTALLATION as here; here.announce(); here.announce()"
+    code = "from utak.simulator.run.warming import THIS_INSTALLATION as here; here.announce(); here.announce()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stderr.count("compiling geometry kernels") == 1
 
@@ -132,9 +131,9 @@ def test_only_uncompiled_uses_are_compiled(monkeypatch) -> None:
 
 CODE = """
 import numpy as np
-from geometry.kernels import jit
+from utak.geometry.kernels import jit
 jit.PROGRESS.notice_delay, jit.PROGRESS.interval = 0.0, 0.0
-from geometry.homotopy.funnel import measure_line
+from utak.geometry.homotopy.funnel import measure_line
 measure_line(np.zeros((2, 2)), 2)
 print(*jit.kernel_status())
 """
@@ -187,7 +186,7 @@ def test_kernels_of_skeletons_that_are_rings_are_warmed() -> None:
     """Exercises and examples once compiled seven kernels that `utak warm` had left out."""
     code = """
 import sys
-from simulator.run import warming
+from utak.simulator.run import warming
 seen = set()
 sys.setprofile(lambda frame, event, _: seen.add(frame.f_code.co_name) if event == "call" else None)
 for use in warming.RARE_USES[-1:]:

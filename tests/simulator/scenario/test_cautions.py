@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-
-from simulator.cli.main import main
+from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[3]
 OFF = "POLYGON ((90 90, 99 90, 99 99, 90 90))"

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-
-from kb.language.diagnostics import BadInputError
-from simulator.scenario.trialfile import answers_as_wanted, read_trial_plan
+from utak.kb.language.diagnostics import BadInputError
+from utak.simulator.scenario.trialfile import answers_as_wanted, read_trial_plan
 
 
 def written(folder: Path, text: str) -> Path:

@@ -8,12 +8,11 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.scenario.picture import draw, read_picture
-from simulator.scenario.scenario import read_any_world
-from simulator.scenario.worldfile import read_world, touches_floor
-from simulator.world.world import World
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.scenario.picture import draw, read_picture
+from utak.simulator.scenario.scenario import read_any_world
+from utak.simulator.scenario.worldfile import read_world, touches_floor
+from utak.simulator.world.world import World
 
 TABLE = "table(10, 8).\n"
 VERGE = 'verge("POLYGON ((0 0, 10 0, 10 8, 0 8, 0 0), (1 1, 9 1, 9 7, 1 7, 1 1))").\n'

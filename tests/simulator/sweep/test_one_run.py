@@ -7,17 +7,16 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
-
-from kb.body import Body
-from kb.language.diagnostics import BadInputError
-from kb.task.task import Task
-from simulator.episode.episode import EpisodeLog
-from simulator.run.session import Session
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
-from simulator.sweep.contents import read_contents
-from simulator.sweep.one_run import run_one
-from simulator.sweep.plan import SweepPlan
+from utak.kb.body import Body
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.task.task import Task
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.contents import read_contents
+from utak.simulator.sweep.one_run import run_one
+from utak.simulator.sweep.plan import SweepPlan
 
 
 def make(body: Body, task: Task, settings: Settings) -> scripted_robot.Robot:

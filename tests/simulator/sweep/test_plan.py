@@ -6,10 +6,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simulator.scenario.settings import Settings
-from simulator.sweep.contents import ScenarioContents, names_of, read_contents, written
-from simulator.sweep.plan import SweepPlan, SweepRun, parse_seeds, written_seeds
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.contents import ScenarioContents, names_of, read_contents, written
+from utak.simulator.sweep.plan import SweepPlan, SweepRun, parse_seeds, written_seeds
 
 ONE = ScenarioContents("one", (("world.txt", "U"), ("goal.lp", "x")))
 TWO = ScenarioContents("two", (("world.txt", "U."), ("goal.lp", "x")))

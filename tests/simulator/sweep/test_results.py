@@ -7,9 +7,8 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.sweep.results import PassingResults, ResultRow, RowForm, encode_row, open_results
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.sweep.results import PassingResults, ResultRow, RowForm, encode_row, open_results
 
 KEYS = [("x", n) for n in range(6)]
 HEADER = {"utak": "sweep", "version": 1, "plan": {"seeds": "0:6"}}

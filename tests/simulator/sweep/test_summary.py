@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simulator.sweep.carrying_out import problem_of
-from simulator.sweep.picture import log_ticks, sweep_picture
-from simulator.sweep.results import ResultRow
-from simulator.sweep.summary import counts_of, table_of, total_of, upper_percentile, wilson_interval
+from utak.simulator.sweep.carrying_out import problem_of
+from utak.simulator.sweep.picture import log_ticks, sweep_picture
+from utak.simulator.sweep.results import ResultRow
+from utak.simulator.sweep.summary import counts_of, table_of, total_of, upper_percentile, wilson_interval
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -13,16 +13,15 @@ import scripted_robot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
-
-from geometry.io.movingai import MapError, parse_map
-from kb.language.diagnostics import BadInputError
-from kb.language.reader import facts_from_text
-from kb.language.wkt import WktError, parse_wkt
-from kb.reasoning.query import QueryEngine
-from kb.reasoning.user_rules import read_tested_rules
-from simulator.cli import parsing
-from simulator.cli.main import main
-from simulator.terminal.printing import as_json
+from utak.geometry.io.movingai import MapError, parse_map
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.wkt import WktError, parse_wkt
+from utak.kb.reasoning.query import QueryEngine
+from utak.kb.reasoning.user_rules import read_tested_rules
+from utak.simulator.cli import parsing
+from utak.simulator.cli.main import main
+from utak.simulator.terminal.printing import as_json
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +169,7 @@ def test_every_command_with_json_is_tried() -> None:
 def test_json_is_strict(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    monkeypatch.setitem(sys.modules, "utak.planner.cycle", sys.modules.get("utak.planner.cycle"))
     scripted_robot.install()
     for arguments in PRINTED[command](write_scene(tmp_path / "scene", 1), tmp_path):
         assert main([*arguments, "--json"]) in (0, 1, 75)

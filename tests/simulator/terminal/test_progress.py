@@ -4,9 +4,8 @@ import itertools
 import sys
 
 import pytest
-
-from planner.under_way import UNDER_WAY
-from simulator.terminal.progress import Progress, StepProgress, duration
+from utak.planner.under_way import UNDER_WAY
+from utak.simulator.terminal.progress import Progress, StepProgress, duration
 
 
 def test_the_rest_is_estimated_by_kind_and_by_how_many_are_done_at_once() -> None:

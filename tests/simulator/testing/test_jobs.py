@@ -10,9 +10,8 @@ import time
 from pathlib import Path
 
 import pytest
-
-from simulator.cli.main import main
-from simulator.testing.handle import WorkerEndedError, WorkerHandle
+from utak.simulator.cli.main import main
+from utak.simulator.testing.handle import WorkerEndedError, WorkerHandle
 
 EXERCISES = Path(__file__).resolve().parents[3] / "docs" / "exercises"
 
@@ -50,7 +49,7 @@ def test_ctrl_c_ends_all_jobs_at_once(tmp_path: Path) -> None:
     for number in range(4):
         shutil.copytree(EXERCISES / "12_noise", tmp_path / "class" / str(number))
     hear = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a parent may ignore it
-    code = f"{hear}; from simulator.cli.main import main; sys.exit(main())"
+    code = f"{hear}; from utak.simulator.cli.main import main; sys.exit(main())"
     command = [sys.executable, "-c", code, "test", str(tmp_path / "class"), "--jobs", "2", "--seed", "5"]
     process = subprocess.Popen(
         command, cwd=EXERCISES.parents[1], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

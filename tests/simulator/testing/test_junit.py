@@ -5,9 +5,8 @@ from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
-
-from simulator.testing.junit import as_junit
-from simulator.testing.record import Wish, without_run
+from utak.simulator.testing.junit import as_junit
+from utak.simulator.testing.record import Wish, without_run
 
 # By element: the attributes that must stand, those that may, and the elements in it. After the schema that Jenkins'
 # xUnit plugin checks; GitLab reads a part of it.

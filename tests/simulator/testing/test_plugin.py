@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
 EXERCISE = ROOT / "docs" / "exercises" / "01_change_the_goal"
-QUIET = ("-p", "utak_pytest", "-p", "no:cacheprovider")
+QUIET = ("-p", "utak.pytest_plugin", "-p", "no:cacheprovider")
 
 
 def project(pytester: pytest.Pytester) -> Path:
@@ -46,7 +46,7 @@ def test_the_plugin_is_switched_off_in_three_ways(pytester: pytest.Pytester) -> 
     project(pytester)
     mine = ["test_mine.py::test_mine"]
     assert collected(pytester, "--no-utak") == mine
-    assert collected(pytester, "-p", "no:utak_pytest") == mine
+    assert collected(pytester, "-p", "no:utak.pytest_plugin") == mine
     pytester.makeini("[pytest]\nutak_scenarios = false\n")
     assert collected(pytester) == mine
 
@@ -77,7 +77,7 @@ def test_reports_say_what_was_expected_what_came_and_how_to_repeat_it(
         ]
     )
     found.stdout.no_fnmatch_line("*Traceback*")
-    found.stdout.no_fnmatch_line("*utak_pytest.py*")
+    found.stdout.no_fnmatch_line("*pytest_plugin.py*")
     assert '<property name="points_earned" value="0" />' in junit.read_text()
 
 
@@ -97,8 +97,9 @@ def test_an_installed_plugin_is_found_and_leaves_packages_of_the_users_alone(tmp
     (information / "METADATA").write_text("Metadata-Version: 2.1\nName: utak\nVersion: 0\n")
     lines = [f"{name} = {module}" for name, module in entries.items()]
     (information / "entry_points.txt").write_text("\n".join(["[pytest11]", *lines, ""]))
-    for name in ("geometry", "kb", "planner", "simulator", "utak_command.py", "utak_pytest.py"):
-        (site / name).symlink_to(ROOT / name)
+    (site / "utak").mkdir()
+    for part in (*(ROOT / "utak").iterdir(), *(ROOT / name for name in ("geometry", "kb", "planner", "simulator"))):
+        (site / "utak" / part.name).symlink_to(part)
     shutil.copytree(EXERCISE / "solution", shutil.copytree(EXERCISE, here / "scene"), dirs_exist_ok=True)
     for name in ("planner", "simulator", "kb"):
         (here / name).mkdir()
@@ -106,7 +107,7 @@ def test_an_installed_plugin_is_found_and_leaves_packages_of_the_users_alone(tmp
     (here / "test_mine.py").write_text(
         "import sys\nimport kb, planner, simulator\n\n\ndef test_mine():\n"
         "    assert kb.MINE and planner.MINE and simulator.MINE\n"
-        "    assert not {'numpy', 'shapely', 'clingo', 'numba', 'geometry'} & set(sys.modules)\n"
+        "    assert not {'numpy', 'shapely', 'clingo', 'numba', 'utak.geometry'} & set(sys.modules)\n"
     )
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
     command = [

@@ -7,11 +7,10 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from geometry.motion.se2 import Rotate, Translate
-from simulator.world.physics import Tabletop
-from simulator.world.senses import NEIGHBOUR_OFFSETS
-from simulator.world.world import Thing, World, outer_ring
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.senses import NEIGHBOUR_OFFSETS
+from utak.simulator.world.world import Thing, World, outer_ring
 
 VERGE = shapely.box(0, 0, 20, 18).difference(shapely.box(2, 2, 18, 16))
 DEEP = 1e-6

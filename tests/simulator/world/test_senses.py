@@ -8,11 +8,10 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate
-
-from simulator.world.physics import Tabletop
-from simulator.world.senses import NEIGHBOUR_OFFSETS, Senses, retina_fields
-from simulator.world.table import Table
-from simulator.world.world import Thing, World
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.senses import NEIGHBOUR_OFFSETS, Senses, retina_fields
+from utak.simulator.world.table import Table
+from utak.simulator.world.world import Thing, World
 
 
 def room(things: list[Thing], heading: int = 0, utak: tuple[float, float] = (8.5, 8.5)) -> World:

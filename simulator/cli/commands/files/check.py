@@ -7,9 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from simulator.scenario.untrusted import add_untrusted_option, refuse_links
-from simulator.terminal import exits
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.simulator.scenario.untrusted import add_untrusted_option, refuse_links
+from utak.simulator.terminal import exits
 
 # The words of the summary, by exit code.
 OUTCOME_WORDS = {
@@ -31,7 +31,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Check every path, whatever is wrong with the others; return the most severe exit code."""
-    from simulator.terminal.outcome import attempt
+    from utak.simulator.terminal.outcome import attempt
 
     codes = []
     for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:
@@ -59,8 +59,8 @@ def _parts(path: Path) -> list[Path]:
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     """Check a scenario folder or one file; the file's name tells what it must hold."""
-    from simulator.scenario.cautions import cautions
-    from simulator.scenario.scenario import read_scenario
+    from utak.simulator.scenario.cautions import cautions
+    from utak.simulator.scenario.scenario import read_scenario
 
     refuse_links(options, path, root)
     if path.is_dir():
@@ -86,29 +86,29 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
 
 def _rules(path: Path) -> None:
     """Check a file of rules, as for --kb."""
-    from kb.reasoning.user_rules import read_tested_rules
+    from utak.kb.reasoning.user_rules import read_tested_rules
 
     read_tested_rules([path])
 
 
 def _plan(path: Path) -> None:
     """Check a trial.lp, and the files of rules that it names."""
-    from simulator.scenario.trialfile import read_trial_plan
+    from utak.simulator.scenario.trialfile import read_trial_plan
 
     rules = read_trial_plan(path).rules
     if rules:
-        from kb.reasoning.user_rules import read_tested_rules
+        from utak.kb.reasoning.user_rules import read_tested_rules
 
         read_tested_rules(list(rules))
 
 
 def _checks() -> dict[str, Callable[[Path], Any]]:
     """Return the check for each file of a scenario, by name."""
-    from kb.task.task import read_start, read_task
-    from simulator.scenario.expectation import read_expectations
-    from simulator.scenario.picture import read_picture
-    from simulator.scenario.scenario import read_any_world
-    from simulator.scenario.worldfile import read_world
+    from utak.kb.task.task import read_start, read_task
+    from utak.simulator.scenario.expectation import read_expectations
+    from utak.simulator.scenario.picture import read_picture
+    from utak.simulator.scenario.scenario import read_any_world
+    from utak.simulator.scenario.worldfile import read_world
 
     return {
         "world.lp": read_world,

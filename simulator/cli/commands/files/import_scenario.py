@@ -7,12 +7,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from simulator.terminal import exits
-from simulator.terminal.numbers import parse_decimal, parse_whole
+from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.simulator.terminal import exits
+from utak.simulator.terminal.numbers import parse_decimal, parse_whole
 
 if TYPE_CHECKING:
-    from simulator.importing.imported import Imported, ImportOptions
+    from utak.simulator.importing.imported import Imported, ImportOptions
 
 MAX_LEVEL_NUMBER = 1_000_000  # the greatest --level; a convention
 MAX_START_COORDINATE = 1e7  # the greatest coordinate of --start, in absolute value; a convention
@@ -78,7 +78,7 @@ def execute(options: argparse.Namespace) -> int:
     """Read the file, check the scenario, and write it; what it does not say as the file does goes to stderr."""
     from importlib import import_module
 
-    from simulator.scenario.folder_writer import write_folder
+    from utak.simulator.scenario.folder_writer import write_folder
 
     path = Path(options.file)
     form = FORMATS.get(path.suffix.lower())
@@ -86,7 +86,7 @@ def execute(options: argparse.Namespace) -> int:
     if form is None or wrong:
         print(f"utak import: {wrong}", file=sys.stderr)
         return exits.USAGE
-    imported: Imported = import_module(f"simulator.importing.{form.module}").read(path, _options(options))
+    imported: Imported = import_module(f"utak.simulator.importing.{form.module}").read(path, _options(options))
     files = scenario_files(imported, path.name, options.goal)
     _check(files, options.file, options.goal)
     write_folder(Path(options.folder), files, options.force)
@@ -110,7 +110,7 @@ def _misused(options: argparse.Namespace, form: ImportFormat | None) -> str:
 
 def _options(options: argparse.Namespace) -> "ImportOptions":
     """Return the options for the reader."""
-    from simulator.importing.imported import ImportOptions
+    from utak.simulator.importing.imported import ImportOptions
 
     return ImportOptions(
         scale=options.scale,
@@ -145,9 +145,9 @@ def _check(files: dict[str, str], name: str, goal: str | None) -> None:
     """Raise BadInputError when files make no scenario that can be run. name : the file that was read."""
     from tempfile import TemporaryDirectory
 
-    from kb.language.source_text import source_from_bytes
-    from simulator.scenario.folder_writer import write_folder
-    from simulator.scenario.scenario import read_scenario
+    from utak.kb.language.source_text import source_from_bytes
+    from utak.simulator.scenario.folder_writer import write_folder
+    from utak.simulator.scenario.scenario import read_scenario
 
     if goal is not None:
         source_from_bytes("--goal", goal.encode("utf-8", "surrogateescape"))
@@ -168,7 +168,7 @@ def _check(files: dict[str, str], name: str, goal: str | None) -> None:
 
 def _scale(text: str) -> Fraction:
     """Return the number for `--scale`."""
-    from simulator.importing.imported import MAX_CELL_SCALE
+    from utak.simulator.importing.imported import MAX_CELL_SCALE
 
     if text.startswith("1/"):
         return Fraction(1, parse_whole(text[2:], 1, MAX_CELL_SCALE))

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from simulator.terminal import exits
+from utak.simulator.terminal import exits
 
 # The files of the new scenario: text by name.
 NEW_SCENARIO_FILES = {
@@ -51,7 +51,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Write the scenario; existing files are not overwritten."""
-    from simulator.scenario.folder_writer import write_folder
+    from utak.simulator.scenario.folder_writer import write_folder
 
     folder = Path(options.folder)
     write_folder(folder, NEW_SCENARIO_FILES)

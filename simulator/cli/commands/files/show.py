@@ -5,9 +5,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from simulator.cli.commands.query import step_number
-from simulator.scenario.untrusted import add_untrusted_option, refuse_links
-from simulator.terminal import exits
+from utak.simulator.cli.commands.query import step_number
+from utak.simulator.scenario.untrusted import add_untrusted_option, refuse_links
+from utak.simulator.terminal import exits
 
 
 def add(parts: Any) -> None:
@@ -29,14 +29,14 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Print or write the picture; what world.txt cannot state goes to the standard error with `--plain`."""
-    from simulator.scenario.picture import draw, labelled, names_and_places
+    from utak.simulator.scenario.picture import draw, labelled, names_and_places
 
     if options.at is not None and Path(options.source).is_dir():
         print("utak show: --at needs an episode: a scenario has no steps", file=sys.stderr)
         return exits.USAGE
     world, polygons, utak, picture = _table(options)
     if options.svg is not None:
-        from simulator.episode.output_files import is_svg, write_whole
+        from utak.simulator.episode.output_files import is_svg, write_whole
 
         write_whole(options.svg, picture.encode(), is_svg, "SVG picture", options.force)
         return exits.SUCCESS
@@ -55,16 +55,15 @@ def _table(options: argparse.Namespace) -> tuple[Any, Any, Any, str]:
     """Return the world, the outlines and Utak's place at the step (None for those at the start), and the picture."""
     refuse_links(options, options.source)
     if Path(options.source).is_dir() or not Path(options.source).exists():
-        from simulator.scenario.scenario import read_any_world
+        from utak.simulator.scenario.scenario import read_any_world
 
         world = read_any_world(Path(options.source))
         return world, None, None, _picture_of_world(world) if options.svg is not None else ""
     import shapely
-
-    from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-    from simulator.episode.episode import read_begun_episode
-    from simulator.episode.record import recorded_world
-    from simulator.replay.drawing import step_svg
+    from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+    from utak.simulator.episode.episode import read_begun_episode
+    from utak.simulator.episode.record import recorded_world
+    from utak.simulator.replay.drawing import step_svg
 
     episode = read_begun_episode(options.source)
     last = len(episode.steps) - 1
@@ -79,6 +78,6 @@ def _table(options: argparse.Namespace) -> tuple[Any, Any, Any, str]:
 
 def _picture_of_world(world: Any) -> str:
     """Return the picture of a scenario's table."""
-    from simulator.replay.drawing import table_svg
+    from utak.simulator.replay.drawing import table_svg
 
     return table_svg(world)

@@ -8,10 +8,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
-
-from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
 UTAK = (0.5, 1.5)

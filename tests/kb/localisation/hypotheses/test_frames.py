@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from kb.localisation.hypotheses.frames import (
+from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
     FRAME_ANGLES,
     ORIGIN_GRID,
@@ -24,8 +23,9 @@ from kb.localisation.hypotheses.frames import (
     origin_grid,
     prune_hypotheses,
 )
-from kb.perception.frame import CENTRE, Frame, turned
-from kb.perception.retina import count_ranges
+from utak.kb.perception.frame import CENTRE, Frame, turned
+from utak.kb.perception.retina import count_ranges
+
 from tests.kb.eyes import random_room, retina, world_of
 
 Point = tuple[float, float]

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 import pytest
-
-from geometry.counts.gibbs import CORNER_COST
-from kb.localisation.hypotheses.frames import (
+from utak.geometry.counts.gibbs import CORNER_COST
+from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
     CENTRED_HYPOTHESES,
     FrameHypothesis,
@@ -14,7 +13,7 @@ from kb.localisation.hypotheses.frames import (
     consistent_hypotheses,
     prune_hypotheses,
 )
-from kb.localisation.hypotheses.map_prior import (
+from utak.kb.localisation.hypotheses.map_prior import (
     LOG_ODDS_PER_COST,
     REWEIGHED_ANGLES,
     UNTRIED_COST,
@@ -22,9 +21,10 @@ from kb.localisation.hypotheses.map_prior import (
     relative_costs,
     weigh_hypotheses,
 )
-from kb.mapping.occupancy import OccupancyMap
-from kb.perception.frame import CENTRE, Frame
-from kb.perception.retina import count_ranges
+from utak.kb.mapping.occupancy import OccupancyMap
+from utak.kb.perception.frame import CENTRE, Frame
+from utak.kb.perception.retina import count_ranges
+
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from tests.kb.eyes import impression, random_room, world_of
 from tests.tables import few

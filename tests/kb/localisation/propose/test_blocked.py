@@ -5,17 +5,17 @@ import math
 import pytest
 import shapely
 from shapely.affinity import translate
+from utak.geometry.motion.se2 import Translate
+from utak.kb.body import Move, Push
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES
+from utak.kb.localisation.propose.blocked import NEGLIGIBLE_CONTACT_CHANCE, possible_ends
+from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.completions import NO_COMPLETIONS, draw_completions, given_squares
+from utak.kb.mapping.occupancy import FREE
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.retina import count_ranges
 
-from geometry.motion.se2 import Translate
-from kb.body import Move, Push
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES
-from kb.localisation.propose.blocked import NEGLIGIBLE_CONTACT_CHANCE, possible_ends
-from kb.localisation.state import TrackerState
-from kb.localisation.tracker import Tracker
-from kb.mapping.completions import NO_COMPLETIONS, draw_completions, given_squares
-from kb.mapping.occupancy import FREE
-from kb.objects.held_object import HeldObject
-from kb.perception.retina import count_ranges
 from tests.kb.drawings import LARGE_ROOM
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around

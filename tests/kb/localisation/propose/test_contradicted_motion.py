@@ -6,18 +6,18 @@ from dataclasses import replace
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
+from utak.geometry.motion.se2 import Rotate
+from utak.kb.body import Turn
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
+from utak.kb.localisation.hypotheses.remap import object_pose, remap
+from utak.kb.localisation.hypotheses.what_if import Surprise
+from utak.kb.localisation.propose.contradicted_motion import shortened_turn
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.mapping.patch import patch_of_polygon
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.frame import CENTRE, Frame
+from utak.kb.perception.retina import count_ranges
 
-from geometry.motion.se2 import Rotate
-from kb.body import Turn
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
-from kb.localisation.hypotheses.remap import object_pose, remap
-from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.contradicted_motion import shortened_turn
-from kb.mapping.occupancy import OPEN
-from kb.mapping.patch import patch_of_polygon
-from kb.objects.held_object import HeldObject
-from kb.perception.frame import CENTRE, Frame
-from kb.perception.retina import count_ranges
 from tests.kb.eyes import retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 

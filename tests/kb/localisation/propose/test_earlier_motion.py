@@ -9,18 +9,18 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Translate
+from utak.kb.body import Move, Push
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
+from utak.kb.localisation.hypotheses.remap import object_pose, remap
+from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.hypotheses.what_if import Surprise
+from utak.kb.localisation.propose.earlier_motion import ReestimatedMotion, reestimate_motions, reestimate_with_origin
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.frame import CENTRE, Frame
+from utak.kb.perception.retina import count_ranges
 
-from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.se2 import Translate
-from kb.body import Move, Push
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
-from kb.localisation.hypotheses.remap import object_pose, remap
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.earlier_motion import ReestimatedMotion, reestimate_motions, reestimate_with_origin
-from kb.objects.held_object import HeldObject
-from kb.perception.frame import CENTRE, Frame
-from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 from tests.kb.localisation.test_tracker import first_contact

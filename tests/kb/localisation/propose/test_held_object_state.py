@@ -8,12 +8,11 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
-
-from geometry.motion.first_contact import Obstacles
-from geometry.motion.se2 import Rotate, Translate
-from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
-from kb.localisation.propose.held_object_state import MAX_LEANING_DISTANCE, lean_on_obstacle, object_after
-from kb.objects.held_object import OUTLINE_TOLERANCE, HeldObject
+from utak.geometry.motion.first_contact import Obstacles
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
+from utak.kb.localisation.propose.held_object_state import MAX_LEANING_DISTANCE, lean_on_obstacle, object_after
+from utak.kb.objects.held_object import OUTLINE_TOLERANCE, HeldObject
 
 JAMBS = [shapely.box(-6, 4, 0, 6), shapely.box(6, 4, 12, 6)]
 WALLS = Obstacles(JAMBS)

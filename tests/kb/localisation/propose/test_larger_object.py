@@ -3,12 +3,12 @@
 import pytest
 import shapely
 from shapely.affinity import translate
+from utak.kb.body import Move, Push
+from utak.kb.knowledge import Knowledge
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.occupancy import FREE, OCCUPIED
+from utak.kb.objects.held_object import HeldObject
 
-from kb.body import Move, Push
-from kb.knowledge import Knowledge
-from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import FREE, OCCUPIED
-from kb.objects.held_object import HeldObject
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 

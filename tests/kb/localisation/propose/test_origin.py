@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-
-from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import (
+from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
     OFF_CENTRE_COST,
     Observation,
     count_contradictions,
     observation_squares,
 )
-from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
-from kb.localisation.propose.origin import COARSE_ORIGINS, blocked_walks_with_origin
-from kb.perception.frame import Frame, turned
-from kb.perception.retina import count_ranges
+from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
+from utak.kb.localisation.propose.origin import COARSE_ORIGINS, blocked_walks_with_origin
+from utak.kb.perception.frame import Frame, turned
+from utak.kb.perception.retina import count_ranges
+
 from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 

@@ -8,15 +8,15 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
+from utak.kb.body import Turn
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, origin_grid
+from utak.kb.localisation.propose.origin_from_turns import TurnOriginCell
+from utak.kb.localisation.score import MAX_FRAME_SEARCHES
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.frame import CENTRE, Frame
 
-from kb.body import Turn
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, origin_grid
-from kb.localisation.propose.origin_from_turns import TurnOriginCell
-from kb.localisation.score import MAX_FRAME_SEARCHES
-from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import OPEN
-from kb.objects.held_object import HeldObject
-from kb.perception.frame import CENTRE, Frame
 from tests.kb.drawings import LARGE_ROOM
 from tests.kb.eyes import impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around

@@ -6,13 +6,13 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely.affinity import translate
+from utak.geometry.raster.components import components
+from utak.kb.body import Move, Push
+from utak.kb.localisation.tracker import Tracker
+from utak.kb.mapping.occupancy import OCCUPIED
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.seams import halves
 
-from geometry.raster.components import components
-from kb.body import Move, Push
-from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import OCCUPIED
-from kb.objects.held_object import HeldObject
-from kb.perception.seams import halves
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 

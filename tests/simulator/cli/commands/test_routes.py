@@ -7,11 +7,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from utak.geometry import Screen
+from utak.geometry.io.movingai import read_trips
+from utak.geometry.io.svg import draw, route_line_width
+from utak.simulator.cli.main import main
 
-from geometry import Screen
-from geometry.io.movingai import read_trips
-from geometry.io.svg import draw, route_line_width
-from simulator.cli.main import main
 from tests.tables import few
 
 MAP = "type octile\nheight 5\nwidth 8\nmap\n........\n.@@@@@@.\n....@...\n.@..@...\n.@......\n"

@@ -10,9 +10,9 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
+from utak.simulator.cli.main import main
 
 from benchmarks.episodes.killing import descendants_of, still_there
-from simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[4]
 
@@ -110,7 +110,7 @@ def test_runs_that_take_too_long_are_recorded_and_the_exit_code_says_so(
 def test_an_interrupt_keeps_what_is_done_and_leaves_no_process(scenario: Path, tmp_path: Path) -> None:
     results = tmp_path / "results.jsonl"
     hear = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a parent may ignore it
-    code = f"{hear}; sys.path.insert(0, {str(ROOT)!r}); from simulator.cli.main import main; sys.exit(main())"
+    code = f"{hear}; sys.path.insert(0, {str(ROOT)!r}); from utak.simulator.cli.main import main; sys.exit(main())"
     options = ["sweep", str(scenario), "--noise", "0.05", "--seeds", "0:500", "-o", str(results)]
     with subprocess.Popen([sys.executable, "-c", code, *options], stderr=subprocess.PIPE, text=True) as process:
         while not results.exists() or results.read_bytes().count(b"\n") < 2:
@@ -139,7 +139,7 @@ def test_no_temporary_folders_stay_after_a_request_to_end(scenario: Path, tmp_pa
     place = tmp_path / "temporary"
     place.mkdir()
     environment = os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(place)}
-    command = [sys.executable, "-m", "simulator.cli", "sweep", str(scenario), "--seeds", "0:5000"]
+    command = [sys.executable, "-m", "utak.simulator.cli", "sweep", str(scenario), "--seeds", "0:5000"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment) as sweep:
         while not list(place.glob("*/*/world.txt")) and sweep.poll() is None:
             time.sleep(0.01)

@@ -4,19 +4,18 @@ import json
 from pathlib import Path
 
 import pytest
-
-from simulator.cli.main import main
-from simulator.episode.episode import EpisodeLog, read_episode
-from simulator.episode.schema import complaints
-from simulator.explaining.fixing.changes import Led, variant_of
-from simulator.explaining.fixing.leading import Leader, free_squares, move_towards, way_between
-from simulator.explaining.fixing.proving import Budget, VariantProver
-from simulator.explaining.fixing.recorded import recorded_run
-from simulator.run.robots import make_robot
-from simulator.run.session import Session
-from simulator.scenario.scenario import Scenario, read_scenario
-from simulator.scenario.settings import Settings
-from simulator.world.physics import Tabletop
+from utak.simulator.cli.main import main
+from utak.simulator.episode.episode import EpisodeLog, read_episode
+from utak.simulator.episode.schema import complaints
+from utak.simulator.explaining.fixing.changes import Led, variant_of
+from utak.simulator.explaining.fixing.leading import Leader, free_squares, move_towards, way_between
+from utak.simulator.explaining.fixing.proving import Budget, VariantProver
+from utak.simulator.explaining.fixing.recorded import recorded_run
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.world.physics import Tabletop
 
 CLOSED = """\
 bbbbbbbbbbbbbbbbb

@@ -3,14 +3,13 @@
 from pathlib import Path
 
 import pytest
-
-from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.episode.episode import Episode
-from simulator.episode.record import header
-from simulator.explaining.fixing.recorded import recorded_run
-from simulator.explaining.fixing.writing import write_scenario
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.episode.episode import Episode
+from utak.simulator.episode.record import header
+from utak.simulator.explaining.fixing.recorded import recorded_run
+from utak.simulator.explaining.fixing.writing import write_scenario
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 EXAMPLES = sorted(path.parent for path in (Path(__file__).parents[4] / "examples").glob("*/goal.lp"))
 SETTINGS = Settings(seed=7, noise=0.01, paths="grid", max_steps=33, pull=False)

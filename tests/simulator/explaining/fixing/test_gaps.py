@@ -7,8 +7,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
-
-from simulator.explaining.fixing.gaps import (
+from utak.simulator.explaining.fixing.gaps import (
     WIDTH_STEP,
     GapSide,
     floor_of,
@@ -16,7 +15,7 @@ from simulator.explaining.fixing.gaps import (
     passages_of,
     widened,
 )
-from simulator.world.world import Thing, World
+from utak.simulator.world.world import Thing, World
 
 TABLE = shapely.box(0, 0, 24, 14)
 

@@ -9,12 +9,11 @@ from typing import Any
 
 import pytest
 import shapely
-
-from kb.body import Body, Command, Grasp, Push
-from kb.task.task import Task
-from planner.cycle import StepReport, Verdict
-from simulator.episode.episode import Episode
-from simulator.explaining.fixing.changes import (
+from utak.kb.body import Body, Command, Grasp, Push
+from utak.kb.task.task import Task
+from utak.planner.cycle import StepReport, Verdict
+from utak.simulator.episode.episode import Episode
+from utak.simulator.explaining.fixing.changes import (
     Away,
     Dropped,
     MoreCommands,
@@ -23,15 +22,15 @@ from simulator.explaining.fixing.changes import (
     variant_of,
     without_goals,
 )
-from simulator.explaining.fixing.gaps import Gap, GapSide, passages_of
-from simulator.explaining.fixing.proving import Budget
-from simulator.explaining.fixing.recorded import RecordedRun, facts_of, task_from_texts
-from simulator.explaining.fixing.search import FixReport, find_fixes
-from simulator.run.embodiment import Embodiment
-from simulator.scenario.scenario import Scenario
-from simulator.scenario.settings import Settings
-from simulator.world.physics import Tabletop
-from simulator.world.world import Thing, World
+from utak.simulator.explaining.fixing.gaps import Gap, GapSide, passages_of
+from utak.simulator.explaining.fixing.proving import Budget
+from utak.simulator.explaining.fixing.recorded import RecordedRun, facts_of, task_from_texts
+from utak.simulator.explaining.fixing.search import FixReport, find_fixes
+from utak.simulator.run.embodiment import Embodiment
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.world import Thing, World
 
 WAY = 9.0  # squares that the machine pushes
 START = {"objects": {}, "held": "t", "utak": [3.5, 4.5]}

@@ -11,11 +11,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-
-from kb.language.diagnostics import CannotOpenError
-from simulator.cli.main import main
-from simulator.sweep.executors.cluster import run_on_dask
-from simulator.sweep.executors.tasks import WorkerTask
+from utak.kb.language.diagnostics import CannotOpenError
+from utak.simulator.cli.main import main
+from utak.simulator.sweep.executors.cluster import run_on_dask
+from utak.simulator.sweep.executors.tasks import WorkerTask
 
 ROOT = Path(__file__).resolve().parents[4]
 TASK = WorkerTask("operator:neg", 1)
@@ -60,7 +59,7 @@ def worker(folder: Path, address: str, code: Path = ROOT) -> "contextmanager[sub
 
 def sweep(folder: Path, *options: str) -> "subprocess.Popen[str]":
     """Start `utak sweep` on a short scenario; the workers run elsewhere and do not have its files."""
-    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from simulator.cli.main import main; sys.exit(main())"
+    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from utak.simulator.cli.main import main; sys.exit(main())"
     command = [sys.executable, "-c", code, "sweep", "small", "--seeds", "0:3", "--max-steps", "2", *options]
     return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
@@ -84,9 +83,8 @@ def test_on_dask_results_are_the_same_byte_for_byte_also_when_a_worker_is_lost(t
 
 def test_a_worker_with_other_code_is_refused_with_a_reason(tmp_path: Path) -> None:
     other = tmp_path / "other"
-    for name in ("geometry", "kb", "planner", "simulator"):
+    for name in ("geometry", "kb", "planner", "simulator", "utak"):
         shutil.copytree(ROOT / name, other / name, ignore=shutil.ignore_patterns("*.pyc", "*.nbi", "*.nbc"))
-    shutil.copy(ROOT / "utak_command.py", other)
     with (other / "kb" / "asp" / "corners.lp").open("a") as stream:
         stream.write("% another state\n")
     with (

@@ -2,9 +2,16 @@
 
 from pathlib import Path
 
-import utak_command
-from simulator.sweep.executors.cluster_worker import MISMATCH, run_task
-from simulator.sweep.executors.code_identity import code_digest, code_identity, difference, utak_version
+from utak.simulator.sweep.executors.cluster_worker import MISMATCH, run_task
+from utak.simulator.sweep.executors.code_identity import (
+    DECIDING_PACKAGES,
+    code_digest,
+    code_identity,
+    difference,
+    utak_version,
+)
+
+ROOT = Path(__file__).resolve().parents[4]
 
 
 def house(folder: Path) -> Path:
@@ -15,25 +22,30 @@ def house(folder: Path) -> Path:
     return folder
 
 
+def digest_of(folder: Path) -> str:
+    """Return the digest of a small project."""
+    return code_digest([folder / name for name in DECIDING_PACKAGES])
+
+
 def test_the_digest_changes_with_programs_and_encodings_alone(tmp_path: Path) -> None:
     one, two = house(tmp_path / "one"), house(tmp_path / "two")
-    before = code_digest(one)
-    assert code_digest(two) == before, "the place has no meaning"
+    before = digest_of(one)
+    assert digest_of(two) == before, "the place has no meaning"
     (two / "kb" / "d.md").write_text("other")
     (two / "planner" / "b.py").write_bytes(b"b = 1\r\n")
     (two / "kb" / "b.pyc").write_text("bytecode")
-    assert code_digest(two) == before
+    assert digest_of(two) == before
     for name, text in {"kb/asp/a.lp": "b.\n", "planner/b.py": "b = 2\n", "geometry/new.py": ""}.items():
         changed = house(tmp_path / name.replace("/", "-"))
         (changed / name).parent.mkdir(exist_ok=True)
         (changed / name).write_text(text)
-        assert code_digest(changed) != before
+        assert digest_of(changed) != before
 
 
 def test_the_identity_names_this_code_and_its_libraries() -> None:
     found = code_identity()
     assert {"utak", "code", "python", "clingo", "numpy", "shapely", "numba"} <= set(found)
-    assert found["code"] == code_digest(Path(utak_command.PROJECT_FOLDER))
+    assert found["code"] == code_digest([ROOT / name for name in DECIDING_PACKAGES])
     assert found["utak"] == utak_version() != "?"
 
 

@@ -7,12 +7,12 @@ import time
 from pathlib import Path
 
 import pytest
+from utak.simulator.sweep.executors.in_process import run_in_this_process
+from utak.simulator.sweep.executors.processes import run_in_processes
+from utak.simulator.sweep.executors.task_process import TaskProcess
+from utak.simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, WorkerTask, carry_out
 
 from benchmarks.episodes.killing import descendants_of, still_there
-from simulator.sweep.executors.in_process import run_in_this_process
-from simulator.sweep.executors.processes import run_in_processes
-from simulator.sweep.executors.task_process import TaskProcess
-from simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, WorkerTask, carry_out
 
 SEGFAULT = WorkerTask("ctypes:string_at", 0)  # reads memory at address 0
 EXIT = WorkerTask("os:_exit", 3)
@@ -102,11 +102,11 @@ def test_an_idle_worker_ends_and_the_next_task_starts_another(tmp_path: Path) ->
 
 
 def test_nothing_in_the_working_directory_is_executed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("json", "operator", "numpy", "planner", "simulator", "sitecustomize", "utak_command"):
+    for name in ("json", "operator", "numpy", "planner", "simulator", "sitecustomize", "utak"):
         (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'executed')!r}, 'w')")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    tasks = [WorkerTask("operator:neg", 1), WorkerTask("simulator.scenario.scenario:read_scenario", "nowhere")]
+    tasks = [WorkerTask("operator:neg", 1), WorkerTask("utak.simulator.scenario.scenario:read_scenario", "nowhere")]
     found = dict(run_in_processes(tasks, 1))
     assert found[0].value == -1 and found[1].reason == "nowhere: cannot open: no such folder"
     assert not (tmp_path / "executed").exists()

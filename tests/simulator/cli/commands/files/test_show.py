@@ -4,9 +4,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-
-from simulator.cli.main import main
-from simulator.scenario.picture import read_picture
+from utak.simulator.cli.main import main
+from utak.simulator.scenario.picture import read_picture
 
 WORLD = """\
 bbbbbbbbbbbbbb

@@ -1,19 +1,17 @@
 """The plugin of pytest for Utak: scenario folders are collected as tests (docs/testing.md).
 
 A folder with an expect.lp and another file of a scenario is one test. It is run by a process of its own, which is
-started with the first scenario that is run. So this module is all that pytest loads, packages of the user's may bear
-the names of ours, and nothing that pytest does to this process, such as turning warnings into errors, changes a run.
+started with the first scenario that is run. So pytest loads this module and the handle of that process alone, and
+nothing that pytest does to its own process, such as turning warnings into errors, changes a run.
 """
 
-import importlib.util
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 
-from utak_command import PROJECT_FOLDER
+from utak.simulator.testing.handle import WorkerEndedError, WorkerHandle
 
 EXPECTATION_FILE = "expect.lp"  # the file that stands for a scenario's test
 # The other files of a scenario: at least one lies beside expect.lp. Missing ones are reported by the test.
@@ -25,9 +23,7 @@ OPTIONS = {
     "noise": ("--utak-noise", float, "S", "how much motions are disturbed in scenarios, 0 to 1"),
     "max_steps": ("--utak-max-steps", int, "N", "give up a scenario after so many commands"),
 }
-HANDLE_FILE = Path(PROJECT_FOLDER) / "simulator" / "testing" / "handle.py"  # loaded by its place: see above
-# Where pytest's configuration keeps the module of that file, and the handle of the process.
-HANDLE_KEY = pytest.StashKey[tuple[ModuleType, Any]]()
+HANDLE_KEY = pytest.StashKey[WorkerHandle]()  # where pytest's configuration keeps the handle of the process
 GREATEST = {"seed": 2**63 - 1, "noise": 1.0, "max_steps": 1_000_000}  # values of the options, as for `utak run`
 
 
@@ -67,18 +63,13 @@ def pytest_unconfigure(config: pytest.Config) -> None:
     """End the process that runs scenarios."""
     kept = config.stash.get(HANDLE_KEY, None)
     if kept is not None:
-        kept[1].close()
+        kept.close()
 
 
-def _handle(config: pytest.Config, start: str) -> tuple[ModuleType, Any]:
-    """Return the module of the handle and the handle of the process that runs scenarios, made once a session."""
+def _handle(config: pytest.Config, start: str) -> WorkerHandle:
+    """Return the handle of the process that runs scenarios, made once a session."""
     if HANDLE_KEY not in config.stash:
-        spec = importlib.util.spec_from_file_location("utak_pytest_handle", HANDLE_FILE)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        config.stash[HANDLE_KEY] = module, module.WorkerHandle(start)
+        config.stash[HANDLE_KEY] = WorkerHandle(start)
     return config.stash[HANDLE_KEY]
 
 
@@ -104,10 +95,9 @@ class ScenarioItem(pytest.Item):
         given = {name: value for name, value in options.items() if value is not None}
         start = self.config.invocation_params.dir
         folder = str(self.path.parent.relative_to(start) if self.path.is_relative_to(start) else self.path.parent)
-        module, handle = _handle(self.config, str(start))
         try:
-            record = handle.ask({"folder": folder, "root": folder, "given": given})
-        except module.WorkerEndedError as ended:
+            record = _handle(self.config, str(start)).ask({"folder": folder, "root": folder, "given": given})
+        except WorkerEndedError as ended:
             raise ScenarioFailedError(f"{folder}: this is a bug of ours: {ended}") from None
         if record["points"] is not None:
             self.user_properties += [(f"points_{name}", value) for name, value in record["points"].items()]

@@ -1,8 +1,8 @@
 """The starting point of the `utak` command and of the processes that it starts.
 
-Our packages have ordinary names, such as `planner`. They are imported from this file's folder only, whatever folders
-users have on Python's path. As a program, `python -I utak_command.py PLACES MODULE ARGUMENT...` runs one of our
-modules. The option `-I` ignores the working directory, PYTHONPATH and the user's start-up files.
+The package `utak` is imported from where this file lies, whatever folders users have on Python's path. As a program,
+`python -I launcher.py PLACES MODULE ARGUMENT...` runs one of our modules. The option `-I` ignores the working
+directory, PYTHONPATH and the user's start-up files.
 """
 
 import os
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from importlib.machinery import ModuleSpec
     from types import ModuleType
 
-# The folder of this file. Importing pathlib would take a third of the time to start.
-PROJECT_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
-# The packages that are imported from that folder only, and this module, which isolated processes import, too.
-OUR_PACKAGES = frozenset({"geometry", "kb", "planner", "simulator", "utak", "benchmarks", "utak_command"})
+# The folder of the package `utak`, and the one that holds it. Importing pathlib takes a third of the time to start.
+PACKAGE_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
+PROJECT_FOLDER = os.path.dirname(PACKAGE_FOLDER)  # noqa: PTH120
+OUR_PACKAGES = frozenset({"utak", "benchmarks"})  # that are imported from that folder only
 # The packages of others on which ours depend.
 DEPENDENCIES = ("clingo", "numpy", "shapely", "networkx", "numba")
 
 
 class OurPackageFinder:
-    """An import finder for our packages in this file's folder; it knows no other modules."""
+    """An import finder for our packages where this file lies; it knows no other modules."""
 
     @staticmethod
     def find_spec(
@@ -35,8 +35,14 @@ class OurPackageFinder:
         return PathFinder.find_spec(name, [PROJECT_FOLDER], target) if name in OUR_PACKAGES else None
 
 
+def folder_of(package: str) -> str:
+    """Return the folder of a package below `utak`: within it where it is installed, beside it in a checkout."""
+    inner = os.path.join(PACKAGE_FOLDER, package)  # noqa: PTH118
+    return inner if os.path.isdir(inner) else os.path.join(PROJECT_FOLDER, package)  # noqa: PTH112, PTH118
+
+
 def install_package_finder() -> None:
-    """Make every later import of one of our packages take the one in this file's folder."""
+    """Make every later import of one of our packages take the one where this file lies."""
     import importlib.machinery  # noqa: F401 (found in the usual way, before the finder is installed)
 
     if not any(getattr(finder, "__qualname__", "") == OurPackageFinder.__qualname__ for finder in sys.meta_path):
@@ -48,14 +54,11 @@ def isolated_command(module: str, *arguments: str) -> list[str]:
 
     module : the name of the module. arguments : its command line.
     """
-    return [sys.executable, "-I", os.path.join(PROJECT_FOLDER, "utak_command.py"), _places(), module, *arguments]  # noqa: PTH118
+    return [sys.executable, "-I", os.path.join(PACKAGE_FOLDER, "launcher.py"), _places(), module, *arguments]  # noqa: PTH118
 
 
 def _places() -> str:
-    """Return the folders of the installed dependencies, joined by os.pathsep.
-
-    An isolated process may not find them by itself.
-    """
+    """Return the folders of the installed dependencies, joined by os.pathsep: an isolated process may not find them."""
     from importlib.util import find_spec
 
     origins = [spec.origin for spec in map(find_spec, DEPENDENCIES) if spec is not None and spec.origin]
@@ -77,9 +80,10 @@ def main() -> int:
     """Run `utak` with the arguments of this process and return its exit code."""
     exit_at_ctrl_c()
     install_package_finder()
-    from simulator.cli.main import main as run
+    from importlib import import_module
 
-    return run()
+    code: int = import_module("utak.simulator.cli.main").main()
+    return code
 
 
 def run_module(places: str, module: str, *arguments: str, dependencies: "Sequence[str]" = DEPENDENCIES) -> None:
