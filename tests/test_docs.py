@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from utak.simulator.cli.main import main
 
+from tests.laws import in_house
 from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -53,7 +54,7 @@ def test_modules_and_files_that_a_page_names_exist(page: Path) -> None:
 
 def known(dotted: str) -> bool:
     """Return whether a dotted name is a package or module of ours, or something that stands in one."""
-    parts = dotted.split(".")
+    parts = in_house(dotted).split(".")
     for length in range(len(parts), 0, -1):
         path = ROOT.joinpath(*parts[:length])
         if path.with_suffix(".py").exists():

@@ -34,11 +34,17 @@ def test_the_modules_hold_what_the_face_names() -> None:
     assert set(utak._MODULES) == set(utak.__all__)
 
 
-def test_another_package_with_one_of_our_names_is_named(tmp_path: Path) -> None:
-    (tmp_path / "kb").mkdir()
-    (tmp_path / "kb" / "__init__.py").write_text("")
-    program = f"import sys; sys.path[:0] = [{str(tmp_path)!r}, {str(ROOT)!r}]\nimport utak\nutak.Run"
-    done = subprocess.run(
-        [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=600, check=False
+def test_packages_of_others_under_the_names_of_our_parts_do_no_harm(tmp_path: Path) -> None:
+    for name in ("geometry", "kb", "planner", "simulator"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "__init__.py").write_text("MINE = True\n")
+    program = (
+        f"import sys; sys.path[:0] = [{str(tmp_path)!r}, {str(ROOT)!r}]\n"
+        "import geometry, kb, planner, simulator, utak, utak.geometry\n"
+        "assert geometry.MINE and kb.MINE and planner.MINE and simulator.MINE\n"
+        "print(utak.Run.__module__, utak.geometry.Screen.__module__)"
     )
-    assert f"Python finds {tmp_path / 'kb' / '__init__.py'} first" in done.stderr
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=600, check=True
+    )
+    assert done.stdout.split() == ["utak.run", "utak.geometry.screen"]

@@ -149,7 +149,8 @@ def compiling(**environment: str) -> "subprocess.CompletedProcess[str]":
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_written(monkeypatch, tmp_path) -> None:
     # A copy: kernels that the installation keeps already would be read.
-    copytree(ROOT / "geometry", tmp_path / "code" / "geometry", ignore=ignore_patterns("__pycache__"))
+    for name in ("utak", "geometry", "kb", "planner", "simulator"):
+        copytree(ROOT / name, tmp_path / "code" / name, ignore=ignore_patterns("__pycache__"))
     place = {"XDG_CACHE_HOME": str(tmp_path), "NUMBA_CACHE_LOCATOR_CLASSES": "UserWideCacheLocator"}
     place |= {"PYTHONPATH": str(tmp_path / "code"), "PYTHONSAFEPATH": "1"}
     assert "compiling" in compiling(**place).stderr
