@@ -273,7 +273,7 @@ def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
     """Return a believed fact in words. The floor counts from where the robot woke, and lies relative to the robot."""
     if name == "offset" and arguments[0] == FLOOR_NODE:
         east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[1:])
-        return f"where the robot woke lies {east:g} squares east and {north:g} north of where it is"
+        return f"where the robot believes that it woke lies {east:g} squares east and {north:g} north of where it is"
     if name == "kind" and arguments[0] in (FLOOR_NODE, VERGE_NODE):
         return f"the squares of the {arguments[0]} are settled to {arguments[2]} percent on average"
     return words_of("belief", fact)

@@ -177,13 +177,14 @@ def test_damaged_files_in_the_cache_are_made_anew(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT", "0") != "0", reason="nothing is compiled")
 def test_kernels_of_an_installation_that_cannot_be_written_are_read(tmp_path: Path) -> None:
     installation = tmp_path / "here"
-    shutil.copytree(ROOT / "geometry", installation / "geometry", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("utak", "geometry"):
+        shutil.copytree(ROOT / name, installation / name, ignore=shutil.ignore_patterns("__pycache__"))
     (installation / "geometry" / "own_kernel.py").write_text(OWN_KERNEL)
     environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
     environment |= {"PYTHONPATH": str(installation), "XDG_CACHE_HOME": str(tmp_path / "users")}
     no_user = UNWRITABLE + "caching.UserWideCacheLocator.ensure_cache_path = refuse\n"
     for before, expected in (("", "42 1"), (UNWRITABLE, "42 0"), (no_user, "42 0")):
-        code = before + KERNEL.replace("from own_kernel", "from geometry.own_kernel")
+        code = before + KERNEL.replace("from own_kernel", "from utak.geometry.own_kernel")
         command = [sys.executable, "-c", code, str(installation)]
         run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=installation)
         assert run.stdout.strip() == expected, run.stderr

@@ -138,7 +138,10 @@ def test_places_are_said_from_where_they_are_counted(run: tuple[Questions, list[
         *place, words = told.pop("org")
         assert place == pytest.approx(line["belief"]["place"], abs=0.006)
         assert told.pop("floor")[:2] == pytest.approx([-value for value in place])
-        assert all(one.endswith("of where the robot woke") for one in (words, *(one for *_, one in told.values())))
+        assert all(
+            one.endswith("of where the robot believes that it woke")
+            for one in (words, *(one for *_, one in told.values()))
+        )
 
 
 def test_a_step_or_a_cell_that_is_not_there_is_refused(run: tuple[Questions, list[Any]]) -> None:
