@@ -48,7 +48,7 @@ BOUND = 2.0  # processor seconds that no command may take
 LISTED_COMMANDS = 10  # of the longest commands are listed
 
 
-class Run(NamedTuple):
+class TimedRun(NamedTuple):
     """A run to be made: a scenario's folder, the noise, its seed, the limit of commands, and whether it is judged."""
 
     folder: Path
@@ -58,7 +58,7 @@ class Run(NamedTuple):
     judged: bool
 
 
-RunMaker = Callable[[Run, Callable[[Any], None]], None]
+RunMaker = Callable[[TimedRun, Callable[[Any], None]], None]
 """Makes a run; calls its second argument with what came of each command, and with the result."""
 
 
@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     with tempfile.TemporaryDirectory(prefix="utak-bounded-") as scratch:
         folders = list(_worlds(given, Path(scratch))) if given.campaign else _folders(given.scenarios)
-        runs = [Run(*which, given.max_steps, given.judge) for which in product(folders, given.noise, given.seeds)]
+        runs = [TimedRun(*which, given.max_steps, given.judge) for which in product(folders, given.noise, given.seeds)]
         runs = list(dict.fromkeys(run if run.noise else run._replace(seed=given.seeds[0]) for run in runs))
         warm()
         rows = list(_told((bounded(run, given.seconds) for run in runs), given.output))
@@ -135,7 +135,7 @@ def _worlds(given: argparse.Namespace, scratch: Path) -> Iterator[Path]:
         yield write(world, scratch / world.name)
 
 
-def run_here(run: Run, tell: Callable[[Any], None]) -> None:
+def run_here(run: TimedRun, tell: Callable[[Any], None]) -> None:
     """Make a run in this process. tell : called with (seconds, action) after each command, and with the result."""
     robots: list[TimedRobot] = []
 
@@ -168,10 +168,10 @@ def warm() -> None:
     """Compile or load the kernels; the processes of the runs are forked from this one and find them."""
     warm_all()
     for name, noise in product(WARMING_WORLDS, (0.0, 0.02)):
-        run_here(Run(EXAMPLES_FOLDER / name, noise, 1, 20, False), lambda _: None)
+        run_here(TimedRun(EXAMPLES_FOLDER / name, noise, 1, 20, False), lambda _: None)
 
 
-def bounded(run: Run, seconds: int, make_run: RunMaker = run_here) -> BoundedRow:
+def bounded(run: TimedRun, seconds: int, make_run: RunMaker = run_here) -> BoundedRow:
     """Make a run in a process of its own, which ends after `seconds` processor seconds.
 
     make_run : makes it there, as `run_here` does.
@@ -208,7 +208,7 @@ def _received(pipe: Connection) -> Iterator[Any]:
             return
 
 
-def _child(run: Run, seconds: int, pipe: Connection, make_run: RunMaker) -> None:
+def _child(run: TimedRun, seconds: int, pipe: Connection, make_run: RunMaker) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     try:
         make_run(run, pipe.send)

@@ -12,7 +12,7 @@ from utak.kb.language.vocabulary import CONSTRAINT_GOALS, ROBOT, TRACK_GOALS
 from utak.kb.task.task import WRAPPING_GOALS, Task
 
 DOOR_GOALS = ("in", "through")  # goals that rest on a door of the room in which their subject was at first
-ORIGIN_GOALS = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first
+ORIGIN_GOALS = (*DOOR_GOALS, "around")  # goals whose meaning depends on where their subject was at first
 
 
 @dataclass(frozen=True)

@@ -10,15 +10,15 @@ Nothing is loaded before a name is used, so `import utak` takes a few millisecon
 
 Modules in reading order:
 
-scenario    a world with a task, from a folder or from texts
-run         the robot in a scenario, step by step; forks of a run
-mind        another mind in the same body
-episode     the record of a run, and its steps
-beliefs     what is believed after a step, and the answers to questions about it
-errors      what is raised besides ValueError and TypeError
-explaining  why something is believed or was done
-markup      tables and captions for notebooks, as HTML
-gym         TABLETOP as a Gymnasium environment (extra `gym`)
+scenario       a world with a task, from a folder or from texts
+run            the robot in a scenario, step by step; forks of a run
+mind           another mind in the same body
+episode        the record of a run, and its steps
+beliefs        what is believed after a step, and the answers to questions about it
+errors         what is raised besides ValueError and TypeError
+explaining     why something is believed or was done
+markup         tables and captions for notebooks, as HTML
+gym            TABLETOP as a Gymnasium environment (extra `gym`)
 launcher       the starting point of the command and of its processes
 pytest_plugin  scenario folders as tests of pytest
 """

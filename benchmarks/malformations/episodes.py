@@ -15,12 +15,12 @@ from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.cli.main import main
 from utak.simulator.run.story import open_story
 from utak.simulator.scenario.settings import Settings
+from utak.launcher import PROJECT_FOLDER
 from utak.simulator.terminal.action_in_words import describe
 
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
 
-PROJECT_FOLDER = Path(__file__).resolve().parents[2]
 RECORDED = (("go_northeast", "2"), ("push_square_corner", "3"))  # runs that are recorded: example, most commands
 ASKED_SHARE = 0.05  # of the episodes that are asked a question: each takes a process about 5 ms
 HOSTILE_VALUES = (  # JSON texts that are put in the place of values
@@ -39,7 +39,7 @@ def recorded_episodes() -> list[bytes]:
         for name, steps in RECORDED:
             log = Path(place) / f"{name}.jsonl"
             with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-                main(["run", str(PROJECT_FOLDER / "examples" / name), "--max-steps", steps, "--log", str(log)])
+                main(["run", str(Path(PROJECT_FOLDER, "examples", name)), "--max-steps", steps, "--log", str(log)])
             found.append(log.read_bytes())
     return found
 

@@ -15,10 +15,9 @@ from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from utak.planner.goals.robot_goals import hidden_from
 from utak.planner.screen.projection import shift_mask
-from utak.planner.sights.frontiers import Viewpoint, viewpoint_of
+from utak.planner.sights.frontiers import WHAT_IS_FELT, Viewpoint, viewpoint_of
 from utak.planner.situation import Situation
 
-WHAT_IS_FELT = "it was not felt whether something stands against the wall"
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ class FewestMoves:
         """Make an empty store for these cost maps and where the robot stands in them."""
         # telling : (rows, columns) bool, where a halt feels what must be felt sooner or later; None for none.
         self._cost_maps = cost_maps
-        self._bonus = np.where(np.zeros_like(cost_maps.safe) if telling is None else telling, MOVE_COST, 0.0).ravel()
+        self._bonus = (np.zeros(cost_maps.safe.shape) if telling is None else MOVE_COST * telling).ravel()
         self._reached: dict[tuple[int, bool], Bools] = {}  # by the greatest length, and whether to inspect an object
         self._turns: dict[tuple[str, bytes], Square | None] = {}  # by the kind and the squares of the subgoal
 

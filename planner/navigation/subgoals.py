@@ -32,6 +32,7 @@ def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int
             assumed = reached.level and subgoal.kind == SubgoalKind.EXPLORE
             kind = SubgoalKind.PASS if assumed else SubgoalKind(subgoal.kind)
             besides = round(TENTHS_PER_SQUARE * subgoal.price)
+            # Both add up to the rounded whole, so that telling them apart changes no choice.
             way = round(TENTHS_PER_SQUARE * (reached.cost + subgoal.price)) - besides
             facts.append(f"aim({number},{kind},{way})")
             facts += [f"besides({number},{besides})"] * bool(besides)

@@ -25,6 +25,7 @@ from utak.planner.screen.projection import (
 )
 from utak.planner.screen.unseen_gain import VERGE_WEIGHT
 
+WHAT_IS_FELT = "it was not felt whether something stands against the wall"
 FOVEA_RANGE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
 MIDDLE_ZONE_RANGE = 7  # squares from which a square lies within the middle zone of the retina (derived: offsets -8..7)
 JAMB_RANGE = 8  # squares around the end of a door's neck within which its walls are looked at (tuned on random worlds)
@@ -84,7 +85,7 @@ def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
 def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     """Return the floor from which the robot feels whether something is part of a wall, and where not yet."""
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
-    return Viewpoint(beside, "it was not felt whether something stands against the wall")
+    return Viewpoint(beside, WHAT_IS_FELT)
 
 
 def elsewhere_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:

@@ -16,7 +16,7 @@ from typing import Any
 from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from utak.kb.language.source_text import Source, lies_outside, read_bytes
 from utak.simulator.episode.output_files import GrowingFile, is_episode
-from utak.simulator.episode.schema import EPISODE_VERSION, KeyPath, column, complaints
+from utak.simulator.episode.schema import EPISODE_VERSION, KeyPath, complaints
 
 STANDARD_OUTPUT = "-"  # the value of --log for the standard output
 MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention
@@ -178,9 +178,18 @@ def _was_changed(row: bytes) -> bool:
 
 def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> Problem:
     """Return the problem of a value, placed at the key that leads to it."""
-    at = column(raw.decode("utf-8"), where)
+    at = _column(raw.decode("utf-8"), where)
     key = ".".join(where)[:80]
     return _problem(path, SourceSpan(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
+
+
+def _column(row: str, where: KeyPath) -> int:
+    """Return the column, from 1, of the last of some nested keys in a line; 1 for no keys."""
+    at = 0
+    for key in where:
+        found = row.find(f'"{key}"', at)
+        at = found if found >= 0 else at
+    return at + 1
 
 
 class EpisodeLog:

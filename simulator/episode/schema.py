@@ -126,12 +126,3 @@ def _of_object(schema: Schema, value: dict[str, Any], at: KeyPath) -> Iterator[L
             yield from _complaints(properties[key], one, (*at, key))
         elif "additionalProperties" in schema:
             yield from _complaints(schema["additionalProperties"], one, (*at, key))
-
-
-def column(row: str, where: KeyPath) -> int:
-    """Return the column, from 1, of the last of some nested keys in a line; 1 for no keys."""
-    at = 0
-    for key in where:
-        found = row.find(f'"{key}"', at)
-        at = found if found >= 0 else at
-    return at + 1

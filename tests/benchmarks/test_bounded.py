@@ -3,13 +3,13 @@
 from pathlib import Path
 
 from benchmarks import bounded
-from benchmarks.bounded import BoundedRow, Run, report
+from benchmarks.bounded import BoundedRow, TimedRun, report
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "go_northeast"
 
 
 def test_every_command_of_a_run_is_timed() -> None:
-    row = bounded.bounded(Run(EXAMPLE, 0.0, 1, 3, False), 60)
+    row = bounded.bounded(TimedRun(EXAMPLE, 0.0, 1, 3, False), 60)
     assert row.verdict in ("done", "limit")
     assert len(row.seconds) == len(row.actions) > 1
     assert min(row.seconds) > 0.0
@@ -18,12 +18,12 @@ def test_every_command_of_a_run_is_timed() -> None:
 
 
 def test_an_endless_run_is_ended_and_reported() -> None:
-    def endless(run: Run, tell) -> None:
+    def endless(run: TimedRun, tell) -> None:
         tell((0.25, {"do": "release"}))
         while True:
             pass
 
-    row = bounded.bounded(Run(EXAMPLE, 0.0, 1, 3, False), 1, endless)
+    row = bounded.bounded(TimedRun(EXAMPLE, 0.0, 1, 3, False), 1, endless)
     assert (row.verdict, row.seconds) == ("ended", [0.25, 0.75])
 
 
