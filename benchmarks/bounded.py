@@ -21,6 +21,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from benchmarks.harness.judging import findings
+from benchmarks.harness.stopwatch import TimedBody, TimedRobot
+from benchmarks.worlds.makers import scenario
+from benchmarks.worlds.scenes import write
 from utak.kb.body import Body
 from utak.kb.task.task import Task
 from utak.simulator.episode.episode import EpisodeLog
@@ -31,11 +36,6 @@ from utak.simulator.run.warming import warm_all
 from utak.simulator.scenario.expectation import should_fail
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.harness.judging import findings
-from benchmarks.harness.stopwatch import TimedBody, TimedRobot
-from benchmarks.worlds.makers import scenario
-from benchmarks.worlds.scenes import write
 
 EXAMPLES_FOLDER = Path(__file__).resolve().parent.parent / "examples"
 WARMING_WORLDS = (

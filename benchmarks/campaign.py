@@ -18,9 +18,6 @@ from itertools import product
 from pathlib import Path
 
 from shapely import Polygon
-from utak.simulator.run.session import Session
-from utak.simulator.sweep.executors.processes import run_in_processes
-from utak.simulator.sweep.results import ResultsProtocol, RowForm, open_results
 
 from benchmarks.harness.beliefs import beliefs
 from benchmarks.harness.drawing import drawing
@@ -28,6 +25,9 @@ from benchmarks.harness.judging import judge_path
 from benchmarks.harness.tally import faults, narrowness, table, verdicts
 from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial_of_outcome, trial_task
 from benchmarks.worlds.makers import add_kinds, scenario, seeds
+from utak.simulator.run.session import Session
+from utak.simulator.sweep.executors.processes import run_in_processes
+from utak.simulator.sweep.results import ResultsProtocol, RowForm, open_results
 
 TrialRunner = Callable[..., CampaignTrial]
 

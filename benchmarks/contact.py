@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity, box
+
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 

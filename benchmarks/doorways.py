@@ -17,6 +17,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.affinity import rotate
+
 from utak.geometry import Passage, Screen
 from utak.geometry.kernels.arrays import Bools, Labels
 

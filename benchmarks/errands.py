@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 import shapely
-from utak.geometry.manipulation.plan_carrying import CarryingPlan, InCorner, Inside, plan_carrying
 
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario
 from benchmarks.worlds.walking import furthest_corner
+from utak.geometry.manipulation.plan_carrying import CarryingPlan, InCorner, Inside, plan_carrying
 
 
 def free_squares(world: RandomScenario) -> np.ndarray:

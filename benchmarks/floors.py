@@ -16,11 +16,11 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+
+from benchmarks.engine.exact import Exact, clearances, labels
 from utak.geometry import Route, Screen
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.pathfinders.visibility_graph import visibility_path
-
-from benchmarks.engine.exact import Exact, clearances, labels
 
 HALF_DIAGONAL = 0.7075  # squares: of a square, and what the polygons that stand for circles lack (derived)
 PATH_TOLERANCE = 1e-9  # squares by which lengths may differ because of rounding (a convention)

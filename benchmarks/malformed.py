@@ -29,6 +29,12 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
+from benchmarks.malformations.commands import in_processes, in_this_process
+from benchmarks.malformations.episodes import episodes
+from benchmarks.malformations.imports import imports
+from benchmarks.malformations.mutate import spoil
+from benchmarks.malformations.outcomes import HANG_SECONDS, bound_memory, came_out
+from benchmarks.malformations.written import written
 from utak.geometry.io.movingai import MapError, parse_map
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from utak.kb.reasoning.encodings import KB_ENCODINGS
@@ -37,13 +43,6 @@ from utak.kb.reasoning.solver import solve
 from utak.kb.reasoning.user_rules import read_tested_rules
 from utak.simulator.scenario.scenario import Scenario, read_scenario
 from utak.simulator.world.physics import Tabletop
-
-from benchmarks.malformations.commands import in_processes, in_this_process
-from benchmarks.malformations.episodes import episodes
-from benchmarks.malformations.imports import imports
-from benchmarks.malformations.mutate import spoil
-from benchmarks.malformations.outcomes import HANG_SECONDS, bound_memory, came_out
-from benchmarks.malformations.written import written
 
 GOOD_WORLD = """\
 % A room with two things.

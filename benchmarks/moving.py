@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.cspace.plan_motion import MotionPlan, plan_motion
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.obstacle_field import ObstacleField

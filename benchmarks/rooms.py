@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity, box
-from utak.geometry.cspace.plan_motion import plan_motion
-from utak.geometry.motion.se2 import Pose
 
 from benchmarks.moving import MovingScene, faults
+from utak.geometry.cspace.plan_motion import plan_motion
+from utak.geometry.motion.se2 import Pose
 
 ROOMS_ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 ROOMS_TEE = shapely.Polygon([(0, 0), (6, 0), (6, 2), (4, 2), (4, 5), (2, 5), (2, 2), (0, 2)])

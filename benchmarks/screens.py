@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from utak.geometry import Screen
-from utak.geometry.io.movingai import Trip, read_map, read_trips
 
 from benchmarks.engine import peers
 from benchmarks.engine.sightlines import Sightlines
+from utak.geometry import Screen
+from utak.geometry.io.movingai import Trip, read_map, read_trips
 
 MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
 TIMED_ROUNDS = 6  # in which calls that are compared have their turns (a convention)

@@ -17,13 +17,12 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from benchmarks.claims.asked import Asked, all_kinds, worlds_of, written
 from utak.simulator.episode.episode import EpisodeLog
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Session
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.claims.asked import Asked, all_kinds, worlds_of, written
 
 SCENARIOS_FOLDER = Path(__file__).resolve().parent.parent / "examples"
 NOISES = (0.0, 0.02)

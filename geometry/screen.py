@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from utak.geometry.homotopy.portals import word_of_line
 from utak.geometry.kernels.arrays import Bools, Labels
 from utak.geometry.passages.narrow_stretches import narrow_squares

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.raster.rasterize import covered_areas
 from utak.kb.language.terms import Fact, Text

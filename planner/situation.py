@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.raster.rasterize import squares
 from utak.kb.language.terms import Fact

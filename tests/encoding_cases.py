@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import clingo
 import clingo.ast
+
 from utak.kb.reasoning.encodings import all_encodings, encoding_files
 
 ROOT = Path(__file__).resolve().parent.parent

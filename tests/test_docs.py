@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from utak.simulator.cli.main import main
 
 from tests.laws import in_house
 from tests.tables import few
+from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted(ROOT.glob("*.md")) + sorted((ROOT / "docs").rglob("*.md"))

@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import pytest
-from utak.kb.language.diagnostics import BadInputError
-from utak.kb.reasoning.encodings import encoding_text
-from utak.kb.reasoning.solver import solve
 
 from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
 from tests.tables import few
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.reasoning.encodings import encoding_text
+from utak.kb.reasoning.solver import solve
 
 
 def name(encoding: Path) -> str:

@@ -14,10 +14,10 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from utak.simulator.cli.main import main
-from utak.simulator.scenario.scenario import read_any_world
 
 from tests.tables import few
+from utak.simulator.cli.main import main
+from utak.simulator.scenario.scenario import read_any_world
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = Path(__file__).with_name("golden_episodes.json")

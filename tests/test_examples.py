@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.scenario.expectation import Snapshot, should_fail, unmet
 from utak.simulator.scenario.scenario import read_scenario
 

@@ -5,11 +5,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+
+from tests.tables import few
 from utak.simulator.cli.main import main
 from utak.simulator.run.trial import run_trial
 from utak.simulator.scenario.untrusted import SCENARIO_FILES
-
-from tests.tables import few
 
 EXERCISES = Path(__file__).resolve().parent.parent / "docs" / "exercises"
 FOLDERS = sorted(path.parent for path in EXERCISES.glob("*/expect.lp"))

@@ -6,10 +6,10 @@ from typing import Any
 
 import clingo
 import pytest
-from utak.kb.reasoning.encodings import all_encodings, encoding_text
-from utak.simulator.cli.main import main
 
 from tests.tables import few
+from utak.kb.reasoning.encodings import all_encodings, encoding_text
+from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = [  # scenario and noise

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from utak.simulator.cli.main import main
 
 from tests.tables import few
+from utak.simulator.cli.main import main
 
 DOOR_IN_THE_CORNER = """\
 bbbbbbbbbbbbbbbbb

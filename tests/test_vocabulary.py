@@ -5,14 +5,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.kb.drawings import known_model
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.reasoning.query import QUERY_PREDICATES
 from utak.kb.world.corners import corners
 from utak.kb.world.facts import Places, model_facts
 from utak.kb.world.rooms import rooms_of
-
-from tests.kb.drawings import known_model
 
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = ROOT / "docs" / "build_vocabulary.py"

@@ -42,15 +42,14 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "Robo
     make : makes the robot, as `utak.simulator.run.robots.make_robot` does.
     pull : whether a held object may be pulled.
     """
+    from benchmarks.harness.stopwatch import TimedBody, TimedRobot
+    from benchmarks.worlds.scenes import RULES_FILE
     from utak.kb.body import Body
     from utak.kb.task.task import Task
     from utak.simulator.episode.episode import EpisodeLog
     from utak.simulator.run.session import Session
     from utak.simulator.scenario.scenario import read_scenario
     from utak.simulator.scenario.settings import Settings
-
-    from benchmarks.harness.stopwatch import TimedBody, TimedRobot
-    from benchmarks.worlds.scenes import RULES_FILE
 
     robots: list[TimedRobot] = []
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from shapely import Polygon
-from utak.simulator.run.warming import warm_all
 
 from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
@@ -18,6 +17,7 @@ from benchmarks.claims.refute import Countersearch, refuted, searched, trespasse
 from benchmarks.claims.row import ERROR, TIME, ClaimRow
 from benchmarks.harness.judging import CHECKOUT, judge_path
 from utak.launcher import isolated_command
+from utak.simulator.run.warming import warm_all
 
 WARMING_TASKS = (5, 9)  # tasks: walking, and carrying
 WALL_CLOCK_FACTOR = (

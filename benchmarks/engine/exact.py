@@ -11,6 +11,7 @@ from functools import cached_property
 from itertools import pairwise, product
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
 
 QUARTERS = 4  # of a square: the grid of points

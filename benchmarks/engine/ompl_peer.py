@@ -7,6 +7,7 @@ from typing import Any
 
 import shapely
 from ompl import base, geometric, util
+
 from utak.geometry.motion.body import new_moving_body
 from utak.geometry.motion.cell_clearance import clearance_at
 from utak.geometry.motion.obstacle_field import ObstacleField

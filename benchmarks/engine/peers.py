@@ -14,6 +14,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 from skimage.morphology import skeletonize
 from sknw import build_sknw
+
 from utak.geometry.kernels.arrays import XY
 
 Finder = Callable[[XY, XY], object]

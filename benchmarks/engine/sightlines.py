@@ -5,6 +5,7 @@ shapely), and nothing with the search that it checks.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.kernels.heap import pop, push
 from utak.geometry.kernels.jit import compiled

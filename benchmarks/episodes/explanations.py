@@ -20,10 +20,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from benchmarks.harness.reasons import complaints
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
-
-from benchmarks.harness.reasons import complaints
 
 CELLS = 160  # cells of an impression
 

@@ -29,11 +29,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.launcher import isolated_command
 from utak.simulator.episode.episode import complete_lines, read_episode
 from utak.simulator.sweep.results import complete_result_lines
 from utak.simulator.terminal import exits
-
-from utak.launcher import isolated_command
 
 SCENARIO_FOLDER = Path(__file__).resolve().parents[2] / "examples" / "go_next_room"
 RUN_OPTIONS = ("--noise", "0.05", "--seed", "3")

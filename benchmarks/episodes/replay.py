@@ -26,11 +26,10 @@ from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from benchmarks.harness.browser import CHROMIUM, Browser
 from utak.simulator.cli.main import main as utak
 from utak.simulator.episode.episode import Episode, EpisodeLine, encode, read_episode
 from utak.simulator.replay.page import replay_page
-
-from benchmarks.harness.browser import CHROMIUM, Browser
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 # With noise these take many steps, and their steps need the most bytes; the first one is the one measured at length.

@@ -9,6 +9,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.scenes import RandomScenario
 from utak.kb.body import Body, Impression
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.field_account import Accommodation
@@ -20,9 +23,6 @@ from utak.kb.world.model import WorldModel
 from utak.planner.cycle import Options, Robot
 from utak.simulator.run.session import RobotMaker
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import RandomScenario
 
 KNOWN_VERGE = 3  # squares of verge known around the table
 

@@ -5,9 +5,9 @@ import re
 from typing import NamedTuple
 
 from shapely import Point
-from utak.kb.perception.frame import turned
 
 from benchmarks.worlds.scenes import RandomScenario
+from utak.kb.perception.frame import turned
 
 ALLOWED = 0.25  # squares by which a missing width may be off
 MAX_PASSAGE_DISTANCE = 1.5  # squares from the true passage to the one told

@@ -11,14 +11,6 @@ from typing import Any
 
 import numpy as np
 from shapely import Polygon
-from utak.kb.body import Body
-from utak.kb.task.task import Task
-from utak.simulator.episode.episode import EpisodeLog
-from utak.simulator.run.robots import make_robot
-from utak.simulator.run.session import Result, RobotMaker, Session
-from utak.simulator.scenario.scenario import read_scenario
-from utak.simulator.scenario.settings import Settings
-from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 from benchmarks.harness.beliefs import Score, beliefs, compare, under_fovea
 from benchmarks.harness.judging import findings
@@ -29,6 +21,14 @@ from benchmarks.harness.stopwatch import Seconds, TimedBody, TimedRobot
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario, write
+from utak.kb.body import Body
+from utak.kb.task.task import Task
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, RobotMaker, Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 LOOPS = (4,)  # tasks whose shortest way is a loop
 # A trial ends itself after its seconds, unless compiled code does not return. Then its process is ended; a convention.

@@ -10,13 +10,12 @@ from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from utak.simulator.cli.main import main
-from utak.simulator.cli.parsing import build_parser
-
 from benchmarks.malformations.episodes import recorded_episodes, spoil_episode
 from benchmarks.malformations.imports import write_malformed_file
 from benchmarks.malformations.outcomes import came_out
 from utak.launcher import PROJECT_FOLDER, isolated_command
+from utak.simulator.cli.main import main
+from utak.simulator.cli.parsing import build_parser
 
 PROCESS_SECONDS = (
     60.0  # seconds until a process counts as hung: Python starts in one or two on a busy core; a convention

@@ -11,15 +11,14 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
+from benchmarks.malformations.mutate import spoil_bytes
+from benchmarks.malformations.outcomes import came_out
 from utak.kb.reasoning.query import QueryEngine
+from utak.launcher import PROJECT_FOLDER
 from utak.simulator.cli.main import main
 from utak.simulator.run.story import open_story
 from utak.simulator.scenario.settings import Settings
-from utak.launcher import PROJECT_FOLDER
 from utak.simulator.terminal.action_in_words import describe
-
-from benchmarks.malformations.mutate import spoil_bytes
-from benchmarks.malformations.outcomes import came_out
 
 RECORDED = (("go_northeast", "2"), ("push_square_corner", "3"))  # runs that are recorded: example, most commands
 ASKED_SHARE = 0.05  # of the episodes that are asked a question: each takes a process about 5 ms

@@ -8,14 +8,13 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
+from benchmarks.malformations.mutate import spoil_bytes
+from benchmarks.malformations.outcomes import came_out
+from benchmarks.malformations.samples import HOSTILE_ELEMENTS, HOSTILE_HEADS, SAMPLES, TEXT_PGM, WIDE_PGM
 from utak.simulator.cli.commands.files.import_scenario import FORMATS, scenario_files
 from utak.simulator.importing.imported import ImportOptions
 from utak.simulator.scenario.folder_writer import write_folder
 from utak.simulator.scenario.scenario import read_scenario
-
-from benchmarks.malformations.mutate import spoil_bytes
-from benchmarks.malformations.outcomes import came_out
-from benchmarks.malformations.samples import HOSTILE_ELEMENTS, HOSTILE_HEADS, SAMPLES, TEXT_PGM, WIDE_PGM
 
 HOSTILE_ELEMENT_SHARE = 0.3  # of the pictures that hold an element that is hostile, and are whole otherwise
 HOSTILE_SHARE = 0.05  # of the files that begin with, or hold, something that an attacker would write

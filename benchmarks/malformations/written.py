@@ -9,14 +9,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from benchmarks.malformations.episodes import HOSTILE_VALUES
+from benchmarks.malformations.mutate import spoil_bytes
+from benchmarks.malformations.outcomes import came_out
 from utak.geometry.kernels.cache import SEAL, SealedFile
 from utak.simulator.episode.output_files import is_episode, is_gif, is_junit, is_svg, write_whole
 from utak.simulator.replay.page import is_page
 from utak.simulator.sweep.results import RowForm, encode_row, open_results
-
-from benchmarks.malformations.episodes import HOSTILE_VALUES
-from benchmarks.malformations.mutate import spoil_bytes
-from benchmarks.malformations.outcomes import came_out
 
 PAGES = (
     b"<!-- a run -->\n<!DOCTYPE html>\n<html><head><title>x</title></head></html>\n",

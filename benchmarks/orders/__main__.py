@@ -17,17 +17,16 @@ from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
 
-from utak.kb.language.diagnostics import BadInputError, CannotOpenError
-from utak.simulator.sweep.executors.processes import run_in_processes
-from utak.simulator.sweep.executors.tasks import Executor, WorkerTask
-from utak.simulator.sweep.results import open_results
-
 from benchmarks.harness.judging import judge_path
 from benchmarks.orders.asked import AskedRun, puzzles, random_tasks
 from benchmarks.orders.row import OrderRow, RunBounds, key_of_run, results_form, row_of_entry
 from benchmarks.orders.run import row_of_outcome, run_task
 from benchmarks.orders.table import failures, table
 from benchmarks.worlds.several.kinds import SEVERAL_KINDS, several_kinds
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.simulator.sweep.executors.processes import run_in_processes
+from utak.simulator.sweep.executors.tasks import Executor, WorkerTask
+from utak.simulator.sweep.results import open_results
 
 DEFAULTS = RunBounds()
 PREPARATION = WorkerTask("utak.simulator.sweep.one_run:prepare", {"carrying": True, "paths": "skeleton"})

@@ -7,6 +7,10 @@ from typing import Any
 
 import numpy as np
 from shapely import Point
+
+from benchmarks.orders.search import Carry
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.legs import Leg
 from utak.geometry.motion.se2 import Translate
@@ -16,10 +20,6 @@ from utak.kb.language.vocabulary import ROBOT
 from utak.simulator.run.embodiment import Embodiment
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.world import Thing, World
-
-from benchmarks.orders.search import Carry
-from benchmarks.worlds.placing import digital
-from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
 
 
 def does_task(world: SeveralWorld, way: Sequence[Carry | XY]) -> bool:

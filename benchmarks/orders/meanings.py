@@ -18,6 +18,8 @@ from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
+
+from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.goals import At
 from utak.geometry.motion.se2 import Pose
@@ -25,8 +27,6 @@ from utak.planner.oracles.carry import CarryOracle
 from utak.planner.oracles.problem import TaskProblem
 from utak.planner.situation import Situation
 from utak.planner.tasking.search import MadePlan, make_plan
-
-from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 
 WIDTH, HEIGHT, SIDE = 36, 22, 3  # squares of the room and of a thing (a convention)
 LEAST_WALL, MOST_WALL = 8, 13  # squares that the wall reaches into the room

@@ -19,14 +19,14 @@ import time
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+
+from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from utak.geometry.manipulation.goals import At, End
 from utak.geometry.motion.se2 import Pose
 from utak.planner.oracles.carry import CarryOracle
 from utak.planner.oracles.problem import TableState, TaskProblem
 from utak.planner.situation import Situation
 from utak.planner.tasking.search import MadePlan, make_plan
-
-from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 
 ROOM_WIDTH, ROOM_HEIGHT = 11, 10  # squares of each of the six rooms (a convention)
 GOALS = (1, 2, 3)  # goals of the tasks in a house

@@ -7,12 +7,12 @@ import numpy as np
 import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
+
+from benchmarks.worlds.placing import digital
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.legs import Leg
 from utak.geometry.raster.components import components
 from utak.geometry.screen import Screen
-
-from benchmarks.worlds.placing import digital
 
 SQUARE_SLACK = 1.0  # squares by which clearances of squares may be less than those of the shapes that cover them
 PARTS_OF_MOTION = 8  # poses of a motion whose shapes, joined, stand for all that it sweeps

@@ -7,9 +7,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from utak.simulator.sweep.results import RowForm, RowKey, complete_result_lines
-
 from benchmarks.orders.asked import AskedRun
+from utak.simulator.sweep.results import RowForm, RowKey, complete_result_lines
 
 RUN_OUT_OF_TIME, RUN_BROKE = "time", "error"  # in place of a verdict
 CAN_BE_DONE, MAY_BE_DONE = "yes", "unknown"

@@ -11,13 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from shapely import Point, Polygon
-from utak.kb.language.vocabulary import ROBOT
-from utak.simulator.episode.episode import EpisodeLog
-from utak.simulator.run.robots import make_robot
-from utak.simulator.run.session import Result, RobotMaker, Session
-from utak.simulator.scenario.scenario import read_scenario
-from utak.simulator.scenario.settings import Settings
-from utak.simulator.sweep.executors.tasks import TOO_LONG, TaskOutcome, WorkerTask, reason_of
 
 from benchmarks.claims.refute import Countersearch, refuted, searched
 from benchmarks.harness.judging import findings
@@ -36,6 +29,13 @@ from benchmarks.orders.search import search
 from benchmarks.worlds.scenes import write
 from benchmarks.worlds.several.kinds import several_world
 from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
+from utak.kb.language.vocabulary import ROBOT
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Result, RobotMaker, Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.tasks import TOO_LONG, TaskOutcome, WorkerTask, reason_of
 
 EPISODE_NAME = "episode.jsonl"
 # A run ends itself after its processor seconds, unless compiled code does not return, or the machine is busy with other

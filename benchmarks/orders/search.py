@@ -19,6 +19,12 @@ import numpy as np
 import shapely
 from shapely import Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
+
+from benchmarks.orders.relaxed import is_in_reach, may_pass, swept
+from benchmarks.worlds.floorplans import convex_corners
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon
+from benchmarks.worlds.walking import corner_box
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import At, End, InCorner, Inside
 from utak.geometry.manipulation.legs import Leg
@@ -26,12 +32,6 @@ from utak.geometry.manipulation.plan_carrying import plan_carrying
 from utak.geometry.motion.se2 import Pose, Translate
 from utak.geometry.raster.components import components
 from utak.kb.language.vocabulary import ROBOT
-
-from benchmarks.orders.relaxed import is_in_reach, may_pass, swept
-from benchmarks.worlds.floorplans import convex_corners
-from benchmarks.worlds.placing import digital
-from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon
-from benchmarks.worlds.walking import corner_box
 
 FOUND, EXHAUSTED, SEARCH_LIMIT = "found", "exhausted", "limit"
 MAX_DETOURS = 3  # carries to places that nothing wants, at most; a convention, for time

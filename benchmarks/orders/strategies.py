@@ -19,14 +19,14 @@ from typing import NamedTuple
 
 import clingo
 import numpy as np
+
+from benchmarks.orders.planning import GOALS, HOUSE_NAMES, house, small_world
+from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from utak.geometry.manipulation.goals import End
 from utak.kb.reasoning.encodings import encoding_text
 from utak.kb.tracing.decisions import record_decisions
 from utak.planner.oracles.carry import CarryOracle
 from utak.planner.tasking.search import TASK_ENCODING, make_plan
-
-from benchmarks.orders.planning import GOALS, HOUSE_NAMES, house, small_world
-from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 
 MAX_SEARCH_CONFLICTS = 200_000  # of one search; ten times the limit of a plan, so that slow strategies are told apart
 Facts = tuple[str, ...]

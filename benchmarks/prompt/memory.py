@@ -6,10 +6,9 @@ python -m benchmarks.prompt.memory [N]      N queries (default 100,000); some mi
 import sys
 from pathlib import Path
 
+from benchmarks.prompt.speed import thousand_facts
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.query import QueryEngine
-
-from benchmarks.prompt.speed import thousand_facts
 
 LOOKS = 20  # how often the memory is looked at
 MAX_GROWTH_MEGABYTES = 20.0  # from the fourth part of the queries to the end, of both processes together

@@ -17,16 +17,15 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.bounded import EXAMPLES_FOLDER
+from benchmarks.rules.track import WALL_AT, TrueTrack
+from benchmarks.rules.tried import TRIED_RULES, WALKS
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.episode.episode import EpisodeLog
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Session
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.bounded import EXAMPLES_FOLDER
-from benchmarks.rules.track import WALL_AT, TrueTrack
-from benchmarks.rules.tried import TRIED_RULES, WALKS
 
 MAX_RULED_COMMANDS = 120  # of a run; each of the examples is done within half of it
 

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from utak.kb.body import DIRECTIONS
 from utak.simulator.scenario.scenario import read_any_world
 from utak.simulator.world.physics import Tabletop

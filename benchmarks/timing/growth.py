@@ -14,6 +14,7 @@ import time
 from collections.abc import Sequence
 
 from shapely import Polygon, box
+
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import Source
 from utak.kb.task.task import task_of

@@ -16,14 +16,14 @@ from pathlib import Path  # noqa: E402
 def main(folder: Path, began: float) -> None:
     """Time the way to the first command in the world of a folder. began : the parent's clock at its call."""
     import numba  # noqa: F401
+
+    from benchmarks.harness.knowing import Informed
     from utak.kb.task.task import read_task
     from utak.planner.carrying import manipulation_oracle
     from utak.planner.cycle import Robot
     from utak.simulator.run.embodiment import Embodiment
     from utak.simulator.scenario.scenario import read_any_world
     from utak.simulator.world.physics import Tabletop
-
-    from benchmarks.harness.knowing import Informed
 
     imported, spent = time.perf_counter(), time.process_time()
     truth = pickle.loads((folder / "truth.pickle").read_bytes())

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import shapely
+
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Pose
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, MapView

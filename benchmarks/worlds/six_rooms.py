@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 from shapely import Polygon, union_all
 from shapely.affinity import rotate, translate
-from utak.kb.perception.frame import turned
 
 from benchmarks.worlds.carrying import carried, door_widths, load
 from benchmarks.worlds.floorplans import FloorPlan, random_plan
 from benchmarks.worlds.placing import OBJECT_GAP, face, spot
 from benchmarks.worlds.scenes import RandomScenario, wkt
 from benchmarks.worlds.walking import corner_box, furthest_corner
+from utak.kb.perception.frame import turned
 
 SIX_ROOM_SHAPES = {"corner": "square", "pose": "l_shape"}  # else the kind is the shape
 MIN_CARRY_DOORS = 3  # doors between a thing and where it must go

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.jit import compiled
 
 SIGHT_RADIUS = 24  # squares; how far can be seen from a place, at any angle of the frame

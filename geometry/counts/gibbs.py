@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.settle import FREE, OCCUPIED
 from utak.geometry.kernels.jit import bare
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.gibbs import UNSEEN_SQUARE
 from utak.geometry.kernels.jit import compiled
 

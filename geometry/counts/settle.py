@@ -15,6 +15,7 @@ fields of which neither is fresh have settled all that they settle together.
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Ints, Longs
 from utak.geometry.kernels.jit import compiled
 

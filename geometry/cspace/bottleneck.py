@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely import affinity
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.motion.obstacle_field import ObstacleField, cheapest_path_costs

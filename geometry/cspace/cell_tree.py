@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Floats, Ints
 from utak.geometry.kernels.jit import bare
 from utak.geometry.motion.cell_clearance import (

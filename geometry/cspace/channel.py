@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
 from utak.geometry.cspace.search_tree import SearchTree, add_cell, cut_off, new_search_tree, set_parent, sort_cells
 from utak.geometry.kernels.arrays import Floats, Ints

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Floats
 from utak.geometry.motion.validation import MAX_COORDINATE
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.cspace.local_planner import BLOCKED, MIN_MOTION, HopContext, hop, shorter_turn
 from utak.geometry.cspace.smoothing import motions_along
 from utak.geometry.kernels.arrays import Floats

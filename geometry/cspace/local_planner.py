@@ -7,6 +7,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import bare
 from utak.geometry.motion.cell_clearance import MovingBody, NearbyEdges

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.cspace.bottleneck import Bottleneck, find_bottleneck, missing_width, status_when_wide
 from utak.geometry.cspace.solver import Inside, MotionSolver
 from utak.geometry.kernels.arrays import Floats

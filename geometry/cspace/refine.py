@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.cspace.cell_tree import CellTree, give_up_cell, is_splittable, split_cell
 from utak.geometry.cspace.local_planner import BLOCKED, HopContext, copy_pose, hop
 from utak.geometry.kernels.arrays import Floats, Ints

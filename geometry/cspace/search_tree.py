@@ -7,6 +7,7 @@ cells. The children of a cell are a linked list in arrays. Plain loops for numba
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints
 from utak.geometry.kernels.jit import bare
 

@@ -4,6 +4,7 @@ import math
 from itertools import pairwise
 
 import numpy as np
+
 from utak.geometry.cspace.local_planner import BLOCKED, MIN_MOTION, TURN_FIRST, HopContext, copy_pose, hop, shorter_turn
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import bare, compiled

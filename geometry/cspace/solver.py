@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.cspace.cell_tree import CellTree, new_cell_tree
 from utak.geometry.cspace.channel import NODE_SETTLED, ChannelSearch, new_channel_search
 from utak.geometry.cspace.disc_bounds import disc_room, find_disc_path, is_cut_off

@@ -9,6 +9,7 @@ free ends of the path round at all.
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats, Ints
 from utak.geometry.kernels.jit import bare
 

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.funnel import Funnel, measure_line, new_funnel, tighten_word
 from utak.geometry.homotopy.strips import Strips, append_symbol, symbol_between
 from utak.geometry.kernels.arrays import Floats, Ints, SquaredDistances

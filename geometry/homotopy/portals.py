@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+
 from utak.geometry.homotopy.strips import Strips, append_symbol, strip_at, symbol_between
 from utak.geometry.kernels.arrays import XY, Ints
 

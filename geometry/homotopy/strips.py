@@ -14,6 +14,7 @@ cell is a square given by its index in the flat screen with one blocked cell on 
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints, SquaredDistances
 from utak.geometry.kernels.jit import bare
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 
 PASSABLE_LETTERS = ".GS"

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from math import floor, isnan, log10
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Floats
 from utak.geometry.passages.necks import Passage
 from utak.geometry.raster.runs import runs_along_rows

@@ -2,6 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Floats, Ints
 from utak.geometry.kernels.heap import pop as pop_item
 from utak.geometry.kernels.heap import push as push_item

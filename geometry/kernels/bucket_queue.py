@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Ints
 from utak.geometry.kernels.jit import bare, compiled
 

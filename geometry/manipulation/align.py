@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.cspace.fewest_motions import longest_edge_tilt
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.grasps import grasp_candidates

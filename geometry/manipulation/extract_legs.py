@@ -4,6 +4,7 @@ import math
 from itertools import groupby, pairwise
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Floats, Longs
 from utak.geometry.manipulation.goals import At, shape_at_pose
 from utak.geometry.manipulation.legs import Leg, PushSegment, direction_to_grasp, round_motion, with_pivots_at_robot

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.cspace.plan_motion import MotionPlan, plan_motion
 from utak.geometry.manipulation.goals import At, Between, InCorner, Inside, goal_key
 from utak.geometry.manipulation.query import ManipulationQuery

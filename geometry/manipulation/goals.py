@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.cspace.solver import Inside
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.motion.se2 import Pose, turned

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+
 from utak.geometry.cspace.fewest_motions import resample_evenly
 from utak.geometry.kernels.arrays import XY, Floats
 from utak.geometry.manipulation.query import ManipulationQuery

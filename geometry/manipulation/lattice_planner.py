@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.extract_legs import CENTRE_TOLERANCE, LegExtraction
 from utak.geometry.manipulation.goals import end_costs

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs
 from utak.geometry.manipulation.workspace import Workspace, widened_body
 from utak.geometry.motion.se2 import Motion, Rotate, Translate

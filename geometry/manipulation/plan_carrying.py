@@ -16,6 +16,7 @@ from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.cspace.bottleneck import Bottleneck
 from utak.geometry.cspace.plan_motion import MotionPlan
 from utak.geometry.kernels.arrays import XY, Bools, Floats

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import At, End, goal_key, shape_at_pose
 from utak.geometry.manipulation.legs import Leg

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.cspace.fewest_motions import fewest_motions, longest_edge_angle, longest_edge_tilt
 from utak.geometry.cspace.local_planner import new_hop_context
 from utak.geometry.cspace.plan_motion import plan_motion

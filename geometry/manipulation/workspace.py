@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.obstacle_field import ObstacleField

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Floats
 from utak.geometry.motion.cell_clearance import MovingBody
 from utak.geometry.motion.first_contact import boundary_edges, with_normals

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.motion.se2 import Motion, Translate
 from utak.geometry.motion.time_of_impact import (

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.kernels.arrays import Floats, Longs
 from utak.geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from utak.geometry.kernels.jit import bare, compiled

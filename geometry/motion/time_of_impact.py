@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import bare, compiled
 from utak.geometry.motion.cell_clearance import squared_distance_to_edge

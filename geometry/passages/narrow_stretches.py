@@ -2,6 +2,7 @@
 
 import numpy as np
 import shapely
+
 from utak.geometry.passages.necks import Passage, Segment
 from utak.geometry.passages.walls import Walls
 

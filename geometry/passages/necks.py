@@ -14,6 +14,7 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Longs
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.passages.walls import Walls

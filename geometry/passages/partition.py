@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Floats, Ints, Labels
 from utak.geometry.kernels.jit import bare, compiled
 from utak.geometry.passages.necks import Passage

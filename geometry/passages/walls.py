@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 
 

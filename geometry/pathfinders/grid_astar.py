@@ -7,6 +7,7 @@ from heapq import heappop, heappush
 from math import sqrt
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Floats, Square
 
 DIAGONAL = sqrt(2.0)

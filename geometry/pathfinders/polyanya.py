@@ -10,6 +10,7 @@ path to reach the goal is the shortest. Dead ends are entered only when the goal
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, step_length, tighten_word
 from utak.geometry.homotopy.strips import Strips, append_symbol, strip_at
 from utak.geometry.kernels.arrays import Floats, Ints

@@ -7,6 +7,7 @@ when it stays in free space. It may touch walls but never passes between two blo
 from heapq import heappop, heappush
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Floats
 from utak.geometry.kernels.jit import bare
 

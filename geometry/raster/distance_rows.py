@@ -9,6 +9,7 @@ at once, many times as fast as an envelope. Far from them the envelope of distan
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints, SquaredDistances
 from utak.geometry.kernels.jit import bare
 from utak.geometry.raster.distance_transform import (

@@ -14,6 +14,7 @@ faster. A row's ``gap`` is the number of steps to the nearest blocked square in 
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Bools, SquaredDistances
 from utak.geometry.kernels.jit import bare
 

@@ -3,6 +3,7 @@
 from math import ceil, hypot
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Floats, SquaredDistances
 
 CLEARANCE_TOLERANCE = 1e-9  # squares: a disc may be this much too near to a wall; bounds rounding

@@ -6,6 +6,7 @@ within 1.1 % of the true ratio. A diagonal step needs both squares beside it fre
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.jit import compiled
 
 GEODESIC_UNREACHED = -1  # the distance of a square that no path leads to

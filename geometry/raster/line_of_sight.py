@@ -7,6 +7,7 @@ unit square sweeps on the way must be free.
 import math
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.kernels.jit import compiled
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.motion.se2 import Motion

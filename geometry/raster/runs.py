@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools, Longs
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Longs
 from utak.geometry.kernels.jit import bare
 

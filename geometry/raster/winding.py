@@ -7,6 +7,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Square
 from utak.geometry.kernels.jit import compiled
 

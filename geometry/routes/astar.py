@@ -9,6 +9,7 @@ the goal's chain to the goal, and 2m + 4 from the start to the goal along a chai
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.landmarks import Landmarks
 from utak.geometry.kernels.arrays import Floats, Ints
 from utak.geometry.kernels.heap import pop, push

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.landmarks import locate
 from utak.geometry.kernels.arrays import Bools, Ints, Labels
 from utak.geometry.passages.necks import Passage

@@ -9,6 +9,7 @@ path better than the candidates.
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.landmarks import Landmarks
 from utak.geometry.kernels.arrays import Floats, Ints
 from utak.geometry.kernels.jit import bare

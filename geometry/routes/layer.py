@@ -5,6 +5,7 @@ from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.landmarks import Landmarks, compute_landmarks
 from utak.geometry.homotopy.strips import Strips, find_strips
 from utak.geometry.kernels.arrays import SquaredDistances

@@ -14,6 +14,7 @@ cannot be raised is a step of the skeleton, or of the steepest ascent to it from
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.funnel import Ends
 from utak.geometry.homotopy.landmarks import locate
 from utak.geometry.homotopy.strips import Strips

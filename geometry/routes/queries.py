@@ -6,6 +6,7 @@ from math import hypot, inf, nan
 from typing import cast
 
 import numpy as np
+
 from utak.geometry.homotopy.funnel import Ends
 from utak.geometry.homotopy.landmarks import compute_landmarks
 from utak.geometry.homotopy.portals import crossings_of, join_words, word_of_cells, word_of_line

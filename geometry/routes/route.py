@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.routes.router import RouteAnswers
 

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, tighten_word
 from utak.geometry.homotopy.landmarks import Anchor, Landmarks, add_chain, add_word, ascend, locate
 from utak.geometry.homotopy.strips import Strips

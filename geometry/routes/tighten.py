@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+
 from utak.geometry.homotopy.funnel import Ends, measure_line, new_funnel, tighten_word
 from utak.geometry.homotopy.portals import crossings_of, join_words
 from utak.geometry.homotopy.strips import Strips, strip_at

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.shapes.misfit import (

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.shapes import misfit
 from utak.geometry.shapes.candidates import best_turned_shape, best_whole_shape

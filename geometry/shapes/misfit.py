@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
 

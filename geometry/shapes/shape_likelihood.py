@@ -13,6 +13,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.shapes.candidates import initial_steps

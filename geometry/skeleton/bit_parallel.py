@@ -7,6 +7,7 @@ lowest bits, and no sum ever carries to the next byte.
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Ints
 from utak.geometry.kernels.jit import bare
 

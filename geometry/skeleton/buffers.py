@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import SquaredDistances
 from utak.geometry.skeleton.skeleton import Words
 

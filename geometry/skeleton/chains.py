@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints
 from utak.geometry.kernels.jit import bare
 from utak.geometry.skeleton.graph import SkeletonGraph, other_direction

@@ -11,6 +11,7 @@ Directions are numbered counter-clockwise from the east: 0 east, 1 north, 2 west
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints, SquaredDistances
 from utak.geometry.kernels.jit import bare
 from utak.geometry.skeleton.bit_parallel import Eights, count_nodes, list_nodes, node_number

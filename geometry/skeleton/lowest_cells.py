@@ -8,6 +8,7 @@ the clearances of many notes are fetched together.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints, SquaredDistances
 from utak.geometry.kernels.jit import bare
 

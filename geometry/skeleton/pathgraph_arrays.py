@@ -7,6 +7,7 @@ every chain again and writes the places of its cells straight into one block of 
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats, Ints, SquaredDistances
 from utak.geometry.kernels.jit import bare
 from utak.geometry.skeleton.graph import SkeletonGraph

@@ -17,6 +17,7 @@ flags below. Directions are numbered 0 east, 1 north, 2 west, 3 south.
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import SquaredDistances
 from utak.geometry.kernels.jit import bare
 

@@ -6,6 +6,7 @@ band while it is in the processor's cache.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, SquaredDistances
 from utak.geometry.kernels.jit import bare
 from utak.geometry.raster.distance_rows import RowWindow, fill_distance_rows, new_row_window

@@ -8,6 +8,7 @@ of cells, but for the ends of lines.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Ints, SquaredDistances
 from utak.geometry.kernels.jit import bare
 from utak.geometry.skeleton.skeleton import KINDS, States, beside

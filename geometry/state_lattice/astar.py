@@ -9,6 +9,7 @@ side. Ties are broken by node number: the same question has the same answer.
 import heapq
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Longs
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION

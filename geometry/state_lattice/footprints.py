@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity
+
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.motion.first_contact import ContactBody, Obstacles

@@ -8,6 +8,7 @@ It never exceeds the true cost: an admissible heuristic.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Longs
 from utak.geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from utak.geometry.kernels.jit import compiled

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Bools, Longs
 from utak.geometry.kernels.jit import compiled
 from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter

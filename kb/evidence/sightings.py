@@ -5,6 +5,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Ints, Square
 from utak.kb.evidence.record import Record
 from utak.kb.perception.frame import Frame

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Square
 from utak.geometry.raster.rasterize import squares as covered_squares
 from utak.kb.body import DIRECTIONS

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, other_outcomes, predicted_outcome
 from utak.kb.localisation.hypotheses.contacts import (

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.gibbs import DRAWN, FREE, OCCUPIED, UNSEEN_SQUARE, Counts, costs, pictures
 from utak.geometry.kernels.arrays import Bools, Floats, Labels, Longs
 from utak.geometry.raster.components import Components, bounding_boxes, components

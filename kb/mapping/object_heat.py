@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.gibbs import DRAWN
 from utak.geometry.counts.moments import Blobs, blobs
 from utak.geometry.kernels.arrays import Floats, Longs

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats, Square
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.gibbs import Counts
 from utak.geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
 from utak.geometry.kernels.arrays import XY, Bools, Ints, Square

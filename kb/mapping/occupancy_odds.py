@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.settle import remaining_counts
 from utak.geometry.kernels.arrays import Floats, Ints
 

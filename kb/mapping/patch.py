@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools, Square
 from utak.geometry.raster.rasterize import squares
 from utak.kb.mapping.occupancy import MapView

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+
 from utak.geometry.counts.uncover import remove_covered_squares
 from utak.geometry.kernels.arrays import Square as Square
 from utak.kb.mapping.patch import Patch, patch_of_polygon, patch_of_squares

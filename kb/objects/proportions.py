@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.kb.objects.subcell_extent import GRID_ALIGNMENT_TOLERANCE, SubcellExtent
 
 MAX_SQUARE_DIFFERENCE = 0.25  # squares: the sides of a square may seem to differ by so much; tuned

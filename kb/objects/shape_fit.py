@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.shapes.fit import fit_shapes
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, MapView

@@ -16,6 +16,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import XY, Floats, Ints, Square
 from utak.kb.body import DIRECTIONS
 from utak.kb.perception.retina import FIELDS, OWN_FIELD

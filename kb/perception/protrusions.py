@@ -9,6 +9,7 @@ Masks are (rows, columns) bool on the arrays of the map view, row 0 in the south
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import bounding_boxes, components, with_edge_neighbours
 from utak.geometry.raster.runs import runs_along_rows

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Bools, Labels, Longs
 from utak.geometry.raster.components import bounding_boxes, components
 from utak.kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, neighbours

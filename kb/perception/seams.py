@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Bools, Labels
 from utak.geometry.raster.components import components
 from utak.geometry.raster.runs import runs_along_rows

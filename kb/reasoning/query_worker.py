@@ -13,6 +13,7 @@ from typing import Any
 
 import clingo
 from clingo.ast import AST, ASTType, parse_string
+
 from utak.kb.language import operating_system
 from utak.kb.language.diagnostics import did_you_mean
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature

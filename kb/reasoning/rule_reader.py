@@ -19,6 +19,7 @@ from clingo.ast import (
     Transformer,
     parse_string,
 )
+
 from utak.kb.language.vocabulary import Signature
 from utak.kb.three_valued.arithmetic import CalculationError, calculate
 from utak.kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import clingo
+
 from utak.kb.reasoning.encodings import CORE_GUIDED
 from utak.kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
 from utak.kb.three_valued.clauses import ClauseError

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import clingo
+
 from utak.kb.reasoning.encodings import CORE_GUIDED, ENCODING_FOLDERS, BoundedAnswer, encoding_files
 from utak.kb.tracing.decisions import note_answer, note_applied_rules
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import clingo
+
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from utak.kb.language.integers import integers_beyond_32_bits
 from utak.kb.language.reader import MAX_TERM_DEPTH, facts_from_text

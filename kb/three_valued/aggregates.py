@@ -1,6 +1,7 @@
 """The value of an aggregate, some tuples of which are certain and others only possible."""
 
 import clingo
+
 from utak.kb.language.integers import MAX_INT32, MIN_INT32
 from utak.kb.three_valued.arithmetic import require_int32
 from utak.kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds

@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import clingo
+
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, KIND_ARGUMENT, TASK_GOAL_ARGUMENT
 from utak.kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 

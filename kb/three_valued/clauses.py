@@ -11,6 +11,7 @@ from typing import Any
 
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator, Sign, UnaryOperator
+
 from utak.kb.language.integers import MIN_INT32
 from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS
 

@@ -11,6 +11,7 @@ from itertools import product
 from typing import Any
 
 import clingo
+
 from utak.kb.three_valued.aggregates import Tally
 from utak.kb.three_valued.arithmetic import CalculationError, calculate
 from utak.kb.three_valued.clauses import (

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import clingo
+
 from utak.kb.language.arguments import ArgumentType, abbreviated
 from utak.kb.language.diagnostics import SourceSpan, did_you_mean
 from utak.kb.language.terms import Number, Symbol, Term, Text

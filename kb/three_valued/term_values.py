@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 import clingo
+
 from utak.kb.language.integers import MAX_INT32, MIN_INT32
 from utak.kb.three_valued.arithmetic import CalculationError
 from utak.kb.three_valued.clauses import ClauseError, ClauseTerm, Compound, Constant, Operation, Variable

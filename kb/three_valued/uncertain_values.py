@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import clingo
+
 from utak.kb.language.integers import MAX_INT32, MIN_INT32
 from utak.kb.three_valued.arithmetic import calculate
 

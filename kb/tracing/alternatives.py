@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import clingo
+
 from utak.kb.tracing.answers import Assumptions, GroundedProgram, PricedAnswer
 from utak.kb.tracing.syntax import JsonValues
 

@@ -5,6 +5,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import clingo
+
 from utak.kb.tracing.instrument import instance_rules, relaxed_rules, weight_rules
 from utak.kb.tracing.syntax import ParsedProgram, ProgramPart, parsed
 

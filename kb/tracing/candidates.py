@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType
+
 from utak.kb.language.vocabulary import Signature
 from utak.kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
 from utak.kb.tracing.syntax import ParsedProgram, Unit, global_variables_of

@@ -12,6 +12,7 @@ from math import comb
 from typing import NamedTuple
 
 import clingo
+
 from utak.kb.tracing.candidates import CandidateFacts
 from utak.kb.tracing.switches import MAX_CHANGE_SIZE, FactChange, SwitchedProgram
 from utak.kb.tracing.syntax import ParsedProgram

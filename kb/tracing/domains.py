@@ -10,6 +10,7 @@ from itertools import islice, permutations, product
 
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign, Transformer
+
 from utak.kb.tracing.calculations import Relation, calculation, names_in, turning_numbers
 from utak.kb.tracing.syntax import ParsedProgram, Unit, head_elements
 

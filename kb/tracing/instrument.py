@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from clingo.ast import AST, ASTType, Sign
+
 from utak.kb.tracing.syntax import FUNCTIONS, SIGNS, ParsedProgram, Unit, atom_text, head_elements, is_choice_head
 
 

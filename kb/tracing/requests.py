@@ -5,6 +5,7 @@ from functools import lru_cache
 from typing import Any
 
 import clingo
+
 from utak.kb.tracing.alternatives import weigh
 from utak.kb.tracing.answers import GroundedProgram, TraceError, instances
 from utak.kb.tracing.candidates import CandidateFacts, candidate_facts

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import clingo
+
 from utak.kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
 from utak.kb.tracing.candidates import CandidateFacts
 from utak.kb.tracing.syntax import ParsedProgram

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools, Square
 from utak.kb.mapping.occupancy import OCCUPIED
 from utak.kb.mapping.patch import patch_of_polygon

@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry import Passage, Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
 from utak.geometry.passages.necks import Segment

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Longs
 from utak.kb.localisation.field_account import Accommodation, CellStatus, FieldAccount
 from utak.kb.perception.regions import label_of

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
 from utak.kb.language.vocabulary import ROBOT

@@ -15,6 +15,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Labels, Square
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary

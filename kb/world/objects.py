@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Bools, Labels, Square
 from utak.geometry.raster.components import bounding_boxes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from shapely import LineString
+
 from utak.geometry.kernels.arrays import Longs
 from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import NO_ROOM, Rooms

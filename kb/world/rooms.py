@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry import Passage, Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
 from utak.geometry.passages.necks import Segment

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Release
 from utak.kb.language.terms import Fact

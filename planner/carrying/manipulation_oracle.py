@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, goal_key, moved
 from utak.geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying

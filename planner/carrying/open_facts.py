@@ -10,6 +10,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.world.model import WorldModel

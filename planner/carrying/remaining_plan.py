@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End
 from utak.geometry.manipulation.legs import shifted, verified

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
 from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS

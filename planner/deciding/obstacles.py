@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import End
 from utak.geometry.manipulation.plan_carrying import At, Inside

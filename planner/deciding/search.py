@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Floats
 from utak.kb.mapping.object_heat import chance_by_seen_squares
 from utak.kb.task.binding import Reconciliation

@@ -10,6 +10,7 @@ from functools import partial
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, Inside
 from utak.kb.body import Grasp, Move, Push, Release, Turn

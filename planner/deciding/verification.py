@@ -9,6 +9,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.kb.world.model import Node, WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of

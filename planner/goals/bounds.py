@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
@@ -17,7 +18,6 @@ from utak.planner.goals.robot_goals import hidden_from
 from utak.planner.screen.projection import shift_mask
 from utak.planner.sights.frontiers import WHAT_IS_FELT, Viewpoint, viewpoint_of
 from utak.planner.situation import Situation
-
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import End, shape_at_pose
 from utak.geometry.manipulation.plan_carrying import Between, InCorner, Inside

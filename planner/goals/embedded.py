@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import shapely
+
 from utak.geometry.kernels.arrays import Bools, Square
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS

@@ -6,6 +6,7 @@ from itertools import combinations, product
 from typing import Any
 
 import shapely
+
 from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, shape_at_pose
 from utak.kb.language.terms import Fact
 from utak.planner.goals.placement import Placement

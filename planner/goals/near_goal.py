@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.manipulation.goals import shape_at_pose
 from utak.geometry.manipulation.plan_carrying import At, Inside
 from utak.geometry.motion.se2 import Pose

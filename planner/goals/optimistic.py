@@ -6,6 +6,7 @@ of the view.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.planner.situation import Situation

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
 from utak.geometry.motion.se2 import Pose, Translate

@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import reduce
 
 import numpy as np
+
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.terms import Fact, Symbol
 from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.language.terms import Fact, Symbol

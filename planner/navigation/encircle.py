@@ -8,6 +8,7 @@ rotation. The choice between them is made like any other choice among topologica
 from collections.abc import Sequence
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Floats, Square
 from utak.geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
 from utak.kb.world.model import Node

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Bools, Square
 from utak.geometry.raster.line_of_sight import straight
 from utak.planner.navigation.routes import PlannedRoute

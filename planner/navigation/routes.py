@@ -9,6 +9,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Square
 from utak.geometry.pathfinders.grid_astar import grid_path

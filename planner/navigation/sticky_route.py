@@ -4,6 +4,7 @@ Both are kept in the map frame, so that they stay valid when the view grows.
 """
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Square
 from utak.kb.world.model import WorldModel
 from utak.planner.navigation.routes import PlannedRoute

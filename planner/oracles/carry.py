@@ -10,6 +10,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, goal_key, moved
 from utak.geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying

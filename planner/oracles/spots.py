@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Ints
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach

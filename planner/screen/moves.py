@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Square
 from utak.geometry.raster.line_of_sight import straight
 from utak.geometry.raster.winding import crossings_by_step

@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import XY, Bools, Floats
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach

@@ -12,6 +12,7 @@ from functools import cache
 from itertools import pairwise
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools, Longs
 from utak.geometry.kernels.arrays import Square as Square
 

@@ -7,6 +7,7 @@ VERGE_WEIGHT when they are occupied only. The counts within the reach of the eye
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.kb.mapping.occupancy import MapView
 

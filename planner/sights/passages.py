@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.planner.screen.moves import EDGE_OFFSET
 from utak.planner.screen.projection import CostMaps

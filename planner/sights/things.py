@@ -1,6 +1,7 @@
 """Things that may be several that touch, and the floor from which their rims are felt all round."""
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR

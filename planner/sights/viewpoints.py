@@ -7,6 +7,7 @@ move where that is possible, also over squares that are only likely free: if one
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.kb.mapping.occupancy import OPEN

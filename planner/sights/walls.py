@@ -13,6 +13,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Square
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.geometry.raster.runs import runs_along_rows

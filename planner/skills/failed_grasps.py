@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Floats
 from utak.geometry.motion.se2 import Rotate
 from utak.kb.perception.frame import CENTRE

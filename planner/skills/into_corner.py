@@ -8,6 +8,7 @@ point where they do, until they stop it.
 import math
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Command, Move
 from utak.kb.world.corners import Corner, known_floor

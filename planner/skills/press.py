@@ -8,6 +8,7 @@ walls is in the corner, whatever is believed of its outline then.
 import math
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.motion.se2 import Translate
 from utak.kb.language.terms import Fact

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.manipulation.goals import End
 from utak.geometry.manipulation.plan_carrying import Inside

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import shapely
+
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
 from utak.kb.mapping.occupancy import OCCUPIED

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
 from utak.geometry.raster.rasterize import squares

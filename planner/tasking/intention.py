@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, moved
 from utak.kb.language.terms import Fact

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Ints
 from utak.geometry.manipulation.goals import End, Inside
 from utak.geometry.motion.se2 import Translate

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Translate

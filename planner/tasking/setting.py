@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Pose

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import shapely
+
 from utak.geometry.motion.se2 import Motion, Translate
 from utak.kb.body import Command, Grasp, Release, Turn
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from shapely.errors import ShapelyError
+
 from utak.kb.evidence.absences import AbsenceExplainer
 from utak.kb.evidence.beliefs import FactExplainer, plain_fact
 from utak.kb.evidence.cells import explain_cell

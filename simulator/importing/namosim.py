@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import shapely
+
 from utak.kb.language.diagnostics import BadInputError, SourceSpan
 from utak.kb.language.source_text import MAX_FILE_BYTES, Source
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.kb.language.diagnostics import BadInputError, SourceSpan
 from utak.kb.language.source_text import Source
 

@@ -15,6 +15,7 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
+
 from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
 from utak.kb.language.source_text import MAX_FILE_BYTES, Source
 from utak.simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects

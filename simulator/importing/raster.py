@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
 from utak.geometry.raster.runs import mask_to_polygon

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.kb.language.diagnostics import CannotOpenError, SourceSpan
 from utak.kb.language.source_text import MAX_FILE_BYTES, Source, lies_outside

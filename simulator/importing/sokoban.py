@@ -16,6 +16,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools
 from utak.kb.language.diagnostics import BadInputError, SourceSpan
 from utak.kb.language.source_text import MAX_FILE_BYTES, Source

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled

@@ -10,6 +10,7 @@ from html import escape
 from typing import Any, NamedTuple
 
 import shapely
+
 from utak.geometry.motion.se2 import direction
 from utak.kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE

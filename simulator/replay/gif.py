@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from PIL import Image, ImageDraw, ImageFont
+
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
 from utak.simulator.episode.episode import Episode, EpisodeLine
 from utak.simulator.terminal.action_in_words import describe

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import shapely
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
 from utak.simulator.episode.record import action_entry, facts_of_line, header

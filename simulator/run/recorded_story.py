@@ -5,6 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 import shapely
+
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes

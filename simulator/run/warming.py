@@ -17,7 +17,6 @@ from pathlib import Path
 from utak.geometry import Screen
 from utak.geometry.kernels.jit import announce_compiling
 from utak.kb.language.operating_system import end_with_parent, read_lines_from_parent
-
 from utak.launcher import folder_of, isolated_command
 
 Use = Callable[[], None]
@@ -121,6 +120,7 @@ def _caches() -> list[Path]:
 def search() -> None:
     """Call the kernels that find routes; about half of all kernels."""
     import numpy as np
+
     from utak.geometry.raster.geodesic import reach
     from utak.geometry.routes.queries import compile_route_kernels
 
@@ -131,6 +131,7 @@ def search() -> None:
 def see() -> None:
     """Call the kernels that find regions and their shapes, and sample completions."""
     import numpy as np
+
     from utak.geometry.counts.gibbs import DRAWN, Counts, pictures
     from utak.geometry.counts.moments import blobs
     from utak.geometry.raster.components import bounding_boxes, components
@@ -146,6 +147,7 @@ def see() -> None:
 def tell_counts() -> None:
     """Call the kernels that derive squares from counts."""
     import numpy as np
+
     from utak.geometry.counts.contradictions import total_contradictions
     from utak.geometry.counts.settle import misfits, remaining_counts, settle
     from utak.geometry.counts.uncover import remove_covered_squares
@@ -164,6 +166,7 @@ def tell_counts() -> None:
 def sightlines() -> None:
     """Call the kernels that follow lines of sight, as `--paths visibility` does."""
     import numpy as np
+
     from utak.geometry.pathfinders.visibility_graph import visibility_path
 
     free = np.ones((5, 5), np.bool_)
@@ -195,6 +198,7 @@ def rings() -> None:
 def move() -> None:
     """Call the kernels that plan a motion of a shape past another at any angle."""
     import shapely
+
     from utak.geometry.cspace.plan_motion import plan_motion
     from utak.geometry.motion.se2 import Pose
 
@@ -204,6 +208,7 @@ def move() -> None:
 def tell_shapes() -> None:
     """Call the kernels that fit shape classes to a thing."""
     import numpy as np
+
     from utak.geometry.shapes.fit import fit_shapes
 
     fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
@@ -223,6 +228,7 @@ def walk() -> None:
     """Call the kernels that move to the first contact, straight, and around a place."""
     import numpy as np
     import shapely
+
     from utak.geometry.motion.first_contact import ContactBody, Obstacles
     from utak.geometry.motion.se2 import Translate
     from utak.geometry.raster.line_of_sight import straight
@@ -245,6 +251,7 @@ def carry() -> None:
     """Call the kernels that plan to carry an object and to turn it."""
     import numpy as np
     import shapely
+
     from utak.geometry.manipulation.plan_carrying import Inside, plan_carrying
     from utak.geometry.motion.first_contact import ContactBody, Obstacles
     from utak.geometry.motion.se2 import Rotate

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import shapely
+
 from utak.kb.language.arguments import decimal_value
 from utak.kb.language.diagnostics import BadInputError, Problem
 from utak.kb.language.source_text import read_source

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import shapely
 from shapely.affinity import rotate, translate
+
 from utak.kb.language.arguments import abbreviated, decimal_value
 from utak.kb.language.diagnostics import BadInputError, Problem, did_you_mean
 from utak.kb.language.reader import parse_facts

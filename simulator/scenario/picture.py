@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import shapely
+
 from utak.geometry.raster.rasterize import squares
 from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
 from utak.kb.language.source_text import Source, read_source

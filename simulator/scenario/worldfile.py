@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import shapely
+
 from utak.kb.language.diagnostics import BadInputError, Problem
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import Source, read_source

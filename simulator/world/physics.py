@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.motion.first_contact import MIN_EDGE_LENGTH, ContactBody, Obstacles, obstacle_part
 from utak.geometry.motion.se2 import Motion, Rotate, Translate, direction

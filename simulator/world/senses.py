@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Longs
 from utak.geometry.raster.surroundings import survey_square
 from utak.simulator.world.table import COLOUR_OF_CODE, Table, colour_code

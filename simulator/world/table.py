@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.raster.rasterize import outline_edges, window_of
 from utak.simulator.world.world import VERGE_COLOUR, World

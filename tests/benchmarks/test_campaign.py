@@ -9,13 +9,6 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from utak.kb.body import Body, Command, Move
-from utak.kb.perception.frame import turned
-from utak.kb.task.task import Task
-from utak.planner.cycle import Verdict
-from utak.simulator.scenario.settings import Settings
-from utak.simulator.sweep.executors.in_process import run_in_this_process
-from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 from benchmarks import campaign
 from benchmarks.harness.beliefs import Score
@@ -28,6 +21,13 @@ from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.scenes import RandomScenario
 from tests.scripted import Scripted
+from utak.kb.body import Body, Command, Move
+from utak.kb.perception.frame import turned
+from utak.kb.task.task import Task
+from utak.planner.cycle import Verdict
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.in_process import run_in_this_process
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 
 def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:

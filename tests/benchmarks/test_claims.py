@@ -6,10 +6,6 @@ from pathlib import Path
 
 import pytest
 from shapely import Polygon, box
-from utak.kb.body import Body
-from utak.kb.task.task import Task
-from utak.planner.cycle import Verdict
-from utak.simulator.scenario.settings import Settings
 
 from benchmarks.claims import __main__ as campaign
 from benchmarks.claims import child
@@ -22,6 +18,10 @@ from benchmarks.claims.table import table
 from benchmarks.worlds.odd.kinds import odd_world
 from benchmarks.worlds.odd.tasks import NO, YES
 from tests.scripted import Scripted
+from utak.kb.body import Body
+from utak.kb.task.task import Task
+from utak.planner.cycle import Verdict
+from utak.simulator.scenario.settings import Settings
 
 LIMITS = Limits(search=5)
 ABLE, UNABLE = Asked("plugged", 0), Asked("plugged", 5)

@@ -12,18 +12,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import box
-from utak.geometry.manipulation.goals import Inside
-from utak.geometry.manipulation.legs import Leg
-from utak.geometry.manipulation.plan_carrying import plan_carrying
-from utak.geometry.motion.se2 import Rotate, Translate
-from utak.kb.body import Body, Command, Move
-from utak.kb.task.task import Task
-from utak.planner.cycle import Verdict
-from utak.simulator.run.session import RobotMaker
-from utak.simulator.scenario.scenario import read_scenario
-from utak.simulator.scenario.settings import Settings
-from utak.simulator.sweep.executors.in_process import run_in_this_process
-from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 
 from benchmarks.orders.__main__ import main
 from benchmarks.orders.asked import AskedRun, is_touching, puzzles, random_tasks
@@ -37,6 +25,18 @@ from benchmarks.worlds.floorplans import FloorPlan
 from benchmarks.worlds.several.kinds import several_world
 from benchmarks.worlds.several.tasks import SeveralWorld
 from tests.scripted import Scripted
+from utak.geometry.manipulation.goals import Inside
+from utak.geometry.manipulation.legs import Leg
+from utak.geometry.manipulation.plan_carrying import plan_carrying
+from utak.geometry.motion.se2 import Rotate, Translate
+from utak.kb.body import Body, Command, Move
+from utak.kb.task.task import Task
+from utak.planner.cycle import Verdict
+from utak.simulator.run.session import RobotMaker
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+from utak.simulator.sweep.executors.in_process import run_in_this_process
+from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 
 ENOUGH_SECONDS = 300  # of the processor, also where kernels are compiled first; searches end when they find a way
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+
 from utak.geometry.raster.components import components
 
 KINDS = ("city", "maze", "rooms", "noise", "warehouse", "caves", "plain", "islands", "diagonals")

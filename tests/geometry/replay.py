@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from utak.geometry.manipulation.plan_carrying import CarryingPlan
 from utak.geometry.motion.se2 import Rotate
 

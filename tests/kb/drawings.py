@@ -4,6 +4,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+
+from tests.kb.eyes import impression, utak_in, world_of
 from utak.kb.body import Move
 from utak.kb.knowledge import Knowledge
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
@@ -13,8 +15,6 @@ from utak.kb.perception.interpretation import interpret_regions
 from utak.kb.perception.regions import label_of, map_regions
 from utak.kb.perception.retina import count_ranges
 from utak.kb.world.model import Node, WorldModel
-
-from tests.kb.eyes import impression, utak_in, world_of
 
 LARGE_ROOM = ["b" * 44, *["b" + "." * 42 + "b"] * 42, "b" * 44]
 

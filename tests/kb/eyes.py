@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+
 from utak.kb.body import Impression
 
 Occupied = Callable[[int, int], bool]

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
+
+from tests.kb.drawings import known_model
 from utak.geometry.kernels.arrays import Bools
 from utak.kb.body import Body
 from utak.kb.mapping.patch import Patch
@@ -28,8 +30,6 @@ from utak.planner.stages import Stage
 from utak.simulator.run.session import RobotMaker
 from utak.simulator.run.warming import warm
 from utak.simulator.scenario.settings import Settings
-
-from tests.kb.drawings import known_model
 
 NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())
 

@@ -7,6 +7,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
+
+from tests.planner.situations import known_situation
 from utak.kb.language.reader import facts_from_text
 from utak.kb.perception.frame import Frame
 from utak.kb.task.task import Task
@@ -14,8 +16,6 @@ from utak.planner.constraints import in_robot_frame, in_view_frame, region_squar
 from utak.planner.goals.placement import forbidden_squares
 from utak.planner.screen.projection import UNSEEN_LEVEL, CostMaps
 from utak.planner.situation import Situation, regions_kept_off
-
-from tests.planner.situations import known_situation
 
 ROWS = [
     "b" * 16,

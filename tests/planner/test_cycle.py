@@ -7,6 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from benchmarks.harness.trial import Conditions, run_trial
+from tests.kb.drawings import known_model
+from tests.kb.eyes import colours_of, impression, utak_in, world_of
+from tests.planner.situations import all_felt
+from tests.tables import few
 from utak.kb.body import Command, Impression, Move
 from utak.kb.language.diagnostics import SourceSpan
 from utak.kb.language.terms import Symbol
@@ -18,12 +24,6 @@ from utak.planner.agenda.decider import Decider
 from utak.planner.cycle import Options, Robot
 from utak.planner.screen.projection import CostMaps
 from utak.planner.stages import constraints, stages
-
-from benchmarks.harness.trial import Conditions, run_trial
-from tests.kb.drawings import known_model
-from tests.kb.eyes import colours_of, impression, utak_in, world_of
-from tests.planner.situations import all_felt
-from tests.tables import few
 
 NOWHERE = SourceSpan(0, 0, 0)
 

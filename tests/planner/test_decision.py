@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
 from utak.planner.decision import Decision, TaskVerdict, impossible
 
 ROOT = Path(__file__).resolve().parents[2] / "planner"

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from utak.simulator.run.session import CannotAdoptError
 
 import utak
+from utak.simulator.run.session import CannotAdoptError
 
 WORLD = "bbbbbbb\nb.....b\nb.....b\nb..U..b\nbbbbbbb\n"
 ROOM = utak.Scenario.from_text(

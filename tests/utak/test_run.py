@@ -5,11 +5,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+
+import utak
 from utak.kb.language.vocabulary import PLAN_PREDICATES
 from utak.simulator.cli.main import main
 from utak.simulator.run.session import Session
-
-import utak
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 NEXT_ROOM = utak.Scenario.read(EXAMPLES / "go_next_room")

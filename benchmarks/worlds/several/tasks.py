@@ -8,11 +8,11 @@ from typing import Any
 from shapely import Point, Polygon, box, union_all
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
-from utak.kb.language.vocabulary import ROBOT
 
 from benchmarks.worlds.floorplans import FloorPlan
 from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt, world_text
 from benchmarks.worlds.walking import corner_box, furthest_corner
+from utak.kb.language.vocabulary import ROBOT
 
 PARAMETERS = "xyzw"  # of the first, second, ... thing of a task
 TRUTH_TOLERANCE = 1e-3  # squares; the same as for expect.lp

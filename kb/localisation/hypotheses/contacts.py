@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, advance, motion_length, partial_outcome

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.counts.contradictions import total_contradictions
 from utak.kb.perception.frame import CENTRE, Frame
 

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.geometry.counts.gibbs import DRAWN, EDGE_COST, OCCUPIED, costs, pictures
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
 from utak.kb.localisation.hypotheses.remap import remap

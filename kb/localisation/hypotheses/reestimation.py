@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,

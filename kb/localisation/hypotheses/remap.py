@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.geometry.shapes.fit import fit_shapes

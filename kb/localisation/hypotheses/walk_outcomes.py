@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+
 from utak.kb.localisation.hypotheses.frames import FrameHypothesis, Position
 from utak.kb.objects.held_object import Square
 

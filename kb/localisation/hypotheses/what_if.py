@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.body import Command, Move, Push, Turn
 from utak.kb.localisation.hypotheses.carry_outcomes import (

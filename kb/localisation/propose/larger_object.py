@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import shapely
+
 from utak.geometry.motion.se2 import Motion, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from utak.kb.localisation.hypotheses.explanation import Explanation

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
+
 from utak.kb.localisation.hypotheses.carry_outcomes import motion_length, partial_outcome
 from utak.kb.localisation.hypotheses.contacts import likeliest_contact_near
 from utak.kb.localisation.hypotheses.frames import (

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import shapely
+
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.motion.se2 import Motion, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome

@@ -8,6 +8,7 @@ from typing import Any
 
 import shapely
 from shapely import affinity
+
 from utak.geometry.cspace.plan_motion import Inside, plan_motion
 from utak.geometry.motion.se2 import Pose
 from utak.kb.language.terms import Text

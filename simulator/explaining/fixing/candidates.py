@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.raster.components import components
 from utak.planner.stages import stages

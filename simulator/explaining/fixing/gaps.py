@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely import affinity
+
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Labels
 from utak.geometry.raster.components import components

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.motion.se2 import direction

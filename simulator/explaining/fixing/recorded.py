@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import shapely
+
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from utak.kb.language.reader import facts_from_text, parse_facts
 from utak.kb.language.source_text import read_source, source_from_bytes

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.motion.se2 import direction
 from utak.kb.evidence.reason import Depth

@@ -10,10 +10,9 @@ from contextlib import suppress
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from utak.launcher import isolated_command
 from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 from utak.simulator.sweep.executors.worker import READY
-
-from utak.launcher import isolated_command
 
 MAX_WORKER_START_SECONDS = 60.0  # seconds of wall-clock time until a worker process must be ready; a convention
 MAX_PREPARATION_SECONDS = 900.0  # seconds for its preparation, which may compile all kernels; a convention

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from utak.geometry.pathfinders.visibility_graph import visibility_path
 
 from benchmarks.engine.sightlines import Sightlines
 from tests.geometry import oracles
 from tests.geometry.routes.test_routes import trips
+from utak.geometry.pathfinders.visibility_graph import visibility_path
 
 
 @settings(max_examples=80, deadline=None)

@@ -11,10 +11,6 @@ import pytest
 from shapely import LineString, box, union_all
 from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
-from utak.geometry.cspace.plan_motion import plan_motion
-from utak.geometry.motion.se2 import Pose
-from utak.simulator.scenario.expectation import Snapshot, unmet
-from utak.simulator.scenario.scenario import read_scenario
 
 from benchmarks.claims.asked import ASKED_KINDS
 from benchmarks.worlds.odd import constraints, openings, plugged, touching
@@ -24,6 +20,10 @@ from benchmarks.worlds.odd.lying import own_square
 from benchmarks.worlds.odd.tasks import NO, NOT_KNOWN, ODD_GOALS, YES, OddWorld
 from benchmarks.worlds.scenes import write
 from tests.tables import few
+from utak.geometry.cspace.plan_motion import plan_motion
+from utak.geometry.motion.se2 import Pose
+from utak.simulator.scenario.expectation import Snapshot, unmet
+from utak.simulator.scenario.scenario import read_scenario
 
 ROOT = Path(__file__).resolve().parents[3]
 SEEDS = range(12)

@@ -5,11 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from utak.kb.mapping.occupancy import FREE
-from utak.simulator.episode.episode import EpisodeLog
-from utak.simulator.run.session import Session
-from utak.simulator.scenario.scenario import read_scenario
-from utak.simulator.scenario.settings import Settings
 
 from benchmarks.harness.knowing import knowing
 from benchmarks.harness.trial import Conditions, run_trial
@@ -17,6 +12,11 @@ from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.plain import PLAIN_GOALS
 from benchmarks.worlds.scenes import write
 from tests.tables import few
+from utak.kb.mapping.occupancy import FREE
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
 
 
 @pytest.mark.parametrize("task", sorted(PLAIN_GOALS))

@@ -12,9 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Point, Polygon, box
 from shapely.affinity import rotate, translate
-from utak.kb.language.vocabulary import ROBOT
-from utak.simulator.scenario.expectation import Snapshot, unmet
-from utak.simulator.scenario.scenario import read_scenario
 
 from benchmarks.worlds.floorplans import FloorPlan, PlanRoom
 from benchmarks.worlds.furniture import rectangle
@@ -22,6 +19,9 @@ from benchmarks.worlds.scenes import PlacedThing, write
 from benchmarks.worlds.several.kinds import SEVERAL_KINDS, main, several_kinds, several_world
 from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon, stages_reached, to_corner, to_pose
 from tests.tables import few
+from utak.kb.language.vocabulary import ROBOT
+from utak.simulator.scenario.expectation import Snapshot, unmet
+from utak.simulator.scenario.scenario import read_scenario
 
 ROOT = Path(__file__).resolve().parents[3]
 SEEDS = range(5)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+
 from utak.geometry.counts.gibbs import (
     CORNER_COST,
     COUNT_ERROR_COST,

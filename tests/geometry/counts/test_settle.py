@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
 
 SQUARE_COUNT, MAX_FIELD_SQUARES = 12, 6

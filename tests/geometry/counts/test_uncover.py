@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.counts.uncover import remove_covered_squares
 
 SIDE = 5

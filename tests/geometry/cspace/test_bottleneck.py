@@ -8,6 +8,8 @@ import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
+
+from tests.tables import few
 from utak.geometry.cspace.bottleneck import (
     WIDENING_CELLS,
     WIDTH_PRECISION,
@@ -20,8 +22,6 @@ from utak.geometry.cspace.plan_motion import plan_motion
 from utak.geometry.manipulation.goals import Inside
 from utak.geometry.motion.obstacle_field import ObstacleField
 from utak.geometry.motion.se2 import Pose
-
-from tests.tables import few
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 BRICK = box(0, 0, 6, 4)

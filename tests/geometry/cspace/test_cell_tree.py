@@ -7,6 +7,7 @@ import networkx as nx
 import numpy as np
 import pytest
 from shapely import box
+
 from utak.geometry.cspace.cell_tree import (
     ROOT_UNITS,
     CellTree,

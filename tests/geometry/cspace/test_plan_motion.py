@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity, box
+
 from utak.geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.obstacle_field import ObstacleField

@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.geometry.cspace.search_tree import add_cell, cut_off, new_search_tree, set_parent, sort_cells
 
 CAPACITY = 12

@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.io.movingai import MapError, parse_map
 
 ROWS = ["@@@@@@", "@....@", "@.TW.@", "@....@", "@@@@@@"]

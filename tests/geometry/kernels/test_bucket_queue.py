@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+
 from utak.geometry.kernels.bucket_queue import BUCKETS, new_queue, put, take
 from utak.geometry.motion.obstacle_field import (
     PIXEL_DIAGONAL_COST,

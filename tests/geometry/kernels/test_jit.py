@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import utak.geometry
 from utak.geometry.kernels.jit import compiled
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+
 from utak.geometry.manipulation.legs import direction_to_grasp
 from utak.geometry.raster.rasterize import squares
 

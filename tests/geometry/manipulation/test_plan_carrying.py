@@ -8,6 +8,11 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
+
+from benchmarks.errands import faults, free_squares, goal_of
+from benchmarks.worlds.makers import scenario
+from tests.geometry.replay import replay, walls_of
+from tests.tables import few
 from utak.geometry.manipulation.goals import Roomy, is_goal_met, moved
 from utak.geometry.manipulation.plan_carrying import (
     At,
@@ -23,11 +28,6 @@ from utak.geometry.manipulation.plan_carrying import (
 from utak.geometry.manipulation.query import ManipulationQuery
 from utak.geometry.manipulation.workspace import Workspace
 from utak.geometry.motion.se2 import Rotate, Translate
-
-from benchmarks.errands import faults, free_squares, goal_of
-from benchmarks.worlds.makers import scenario
-from tests.geometry.replay import replay, walls_of
-from tests.tables import few
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 ROOM = box(26, 2, 50, 22)

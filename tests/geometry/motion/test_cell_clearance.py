@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity, box
+
 from utak.geometry.motion.body import new_moving_body
 from utak.geometry.motion.cell_clearance import CELL_BLOCKED, CELL_CENTRE_FREE, CELL_FREE, classify_cell, clearance_at
 from utak.geometry.motion.obstacle_field import ObstacleField

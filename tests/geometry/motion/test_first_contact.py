@@ -11,6 +11,7 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
+
 from utak.geometry.motion.first_contact import Contact, ContactBody, Obstacles, obstacle_part
 from utak.geometry.motion.se2 import Motion, Pose, Rotate, Translate
 

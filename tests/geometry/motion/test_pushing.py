@@ -7,9 +7,9 @@ brought out of it. A body in a corner is brought along a wall only by a robot on
 import numpy as np
 import pytest
 from shapely import box
-from utak.geometry.manipulation.plan_carrying import At, InCorner, Inside, Pose, plan_carrying
 
 from tests.geometry.replay import replay
+from utak.geometry.manipulation.plan_carrying import At, InCorner, Inside, Pose, plan_carrying
 
 
 def alley(width: int, bay: int = 0) -> np.ndarray:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import shapely
 from shapely import MultiPolygon, Polygon, box
+
 from utak.geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
 from utak.geometry.manipulation.plan_carrying import At, InCorner, plan_carrying
 from utak.geometry.motion.se2 import Pose

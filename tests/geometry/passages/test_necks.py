@@ -7,11 +7,11 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from utak.geometry import Screen
-from utak.geometry.passages.walls import find_walls
 
 from benchmarks import doorways
 from tests.geometry import oracles
+from utak.geometry import Screen
+from utak.geometry.passages.walls import find_walls
 
 TWO_ROOMS = """
 ######################

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 import shapely
 from hypothesis import given, settings
+
+from tests.geometry import oracles
+from tests.geometry.routes.test_routes import polygon, trips
 from utak.geometry import Screen
 from utak.geometry.io.movingai import read_map, read_trips
 from utak.geometry.io.svg import draw
 from utak.geometry.pathfinders.grid_astar import grid_path
 from utak.geometry.pathfinders.visibility_graph import visibility_path
-
-from tests.geometry import oracles
-from tests.geometry.routes.test_routes import polygon, trips
 
 
 def pinches(free):

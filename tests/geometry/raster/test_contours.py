@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.raster.components import components
 from utak.geometry.raster.contours import outline
 

@@ -5,6 +5,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.raster.line_of_sight import straight
 
 SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))

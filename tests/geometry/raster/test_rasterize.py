@@ -7,6 +7,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.geometry.raster.rasterize import covered_areas, squares, squares_after
 

@@ -7,6 +7,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+
 from utak.geometry.raster.runs import mask_to_polygon, runs_along_rows
 
 MASKS = arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=6), elements=st.booleans())

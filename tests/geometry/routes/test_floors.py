@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from benchmarks.engine.exact import clearances
+from benchmarks.floors import CHECKS, disagreements
 from utak.geometry import Route, Screen
 from utak.geometry.pathfinders.visibility_graph import visibility_path
 from utak.geometry.routes.lifting import lift_to_skeleton
 from utak.geometry.routes.tighten import word_of_crossings
-
-from benchmarks.engine.exact import clearances
-from benchmarks.floors import CHECKS, disagreements
 
 FLOOR_SEED = 20  # other floors than those of the campaign
 

@@ -8,9 +8,9 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from utak.geometry import Route, Screen
 
 from tests.geometry import oracles
+from utak.geometry import Route, Screen
 
 MAX_PATHS = 500  # ways over a pathgraph: screens with more are left out, for there may be any number
 

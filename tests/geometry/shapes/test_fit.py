@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity
+
 from utak.geometry.raster.rasterize import squares
 from utak.geometry.shapes.fit import fit_shapes
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity
+
+from tests.tables import few
 from utak.geometry.raster.rasterize import squares
 from utak.geometry.shapes import misfit
 from utak.geometry.shapes.candidates import best_turned_shape
 from utak.geometry.shapes.shape_likelihood import SIZE_RANGE, parameter_volume
-
-from tests.tables import few
 
 PAD = 2
 Draw = Callable[[np.random.Generator], shapely.Polygon]

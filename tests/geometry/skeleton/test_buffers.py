@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from utak.geometry import Screen
 from utak.geometry.skeleton import buffers
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.geometry import lookalikes, oracles
 from utak.geometry import Screen
 from utak.geometry.routes.layer import new_state
 from utak.geometry.skeleton import bit_parallel, lowest_cells
 from utak.geometry.skeleton.graph import WORDS_AHEAD, contract, is_node
 from utak.geometry.skeleton.skeleton import HALT
 from utak.geometry.skeleton.sweep import survey
-
-from tests.geometry import lookalikes, oracles
 
 
 def plain_walks(screen):

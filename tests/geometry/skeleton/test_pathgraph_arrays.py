@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from utak.geometry import Screen
-from utak.geometry.skeleton.networkx_export import networkx_graph, paused_collection
 
 from tests.geometry import lookalikes, oracles
+from utak.geometry import Screen
+from utak.geometry.skeleton.networkx_export import networkx_graph, paused_collection
 
 
 def plain(graph):

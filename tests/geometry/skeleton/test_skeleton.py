@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.geometry import lookalikes, oracles
+from tests.geometry.measuring import measure
 from utak.geometry import Screen
 from utak.geometry.raster import distance_transform
 from utak.geometry.routes.layer import find_pathgraph, least_squared_clearance, new_state
 from utak.geometry.skeleton.graph import contract
 from utak.geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
 from utak.geometry.skeleton.sweep import survey
-
-from tests.geometry import lookalikes, oracles
-from tests.geometry.measuring import measure
 
 RADII = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
 

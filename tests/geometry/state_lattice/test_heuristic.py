@@ -5,6 +5,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
+
 from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS, new_footprints
 from utak.geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION, can_reach_end, cost_to_go
 from utak.geometry.state_lattice.lattice import (

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode

@@ -8,6 +8,9 @@ from typing import Any
 
 import clingo
 import pytest
+
+from benchmarks.harness.reasons import complaints, covers
+from tests.tables import few
 from utak.kb.evidence.proving import reason_of_proof
 from utak.kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
 from utak.kb.explanation.values import ProofNode
@@ -17,9 +20,6 @@ from utak.kb.world.stated_plan import SETTLING_WORDS
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
-
-from benchmarks.harness.reasons import complaints, covers
-from tests.tables import few
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 RUNS = [("go_next_room_askew", "0"), ("push_l_tight_door", "0"), ("push_square_next_room", "0.05")]

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import clingo
 import clingo.ast
+
 from utak.kb.explanation.values import ProofNode, RivalChoice, RuleText
 from utak.kb.reasoning.encodings import encoding_files, encoding_text
 

@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.encoding_cases import ENCODINGS, Case, cases_of
+from tests.kb.explanation.proof_checker import Decision, best_decisions, faults, faults_of_rivals
+from tests.kb.explanation.random_facts import INPUTS, encoding_path, random_facts
+from tests.tables import few
 from utak.kb.explanation.programs import ExplanationError
 from utak.kb.explanation.proof import explain_decision
 from utak.kb.explanation.values import ProofNode
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import facts_from_text
 from utak.kb.reasoning.encodings import encoding_text
-
-from tests.encoding_cases import ENCODINGS, Case, cases_of
-from tests.kb.explanation.proof_checker import Decision, best_decisions, faults, faults_of_rivals
-from tests.kb.explanation.random_facts import INPUTS, encoding_path, random_facts
-from tests.tables import few
 
 # Cases with rules of users are left out: a decision is recorded with its facts.
 CASES = [(encoding, case) for encoding in ENCODINGS for case in cases_of(encoding) if ":-" not in case.facts]

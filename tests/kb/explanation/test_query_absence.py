@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+
 from utak.kb.explanation.programs import DecisionProgram, ExplanationError
 from utak.kb.explanation.query_absence import explain_query_absence
 from utak.kb.language.diagnostics import BadInputError

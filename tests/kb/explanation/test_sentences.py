@@ -8,12 +8,12 @@ import clingo.ast
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+from tests.encoding_cases import ENCODINGS, ROOT, statements
 from utak.kb.explanation.programs import decision_program, encoding_names, rules_of
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.reasoning.encodings import encoding_files
 from utak.kb.reasoning.sentences import fill, placeholders, read_sentences
-
-from tests.encoding_cases import ENCODINGS, ROOT, statements
 
 NAMES = [encoding.stem for encoding in ENCODINGS]
 

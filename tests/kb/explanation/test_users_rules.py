@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.kb.explanation.belief import explain_query_atom
 from utak.kb.explanation.programs import DecisionProgram, ExplanationError
 from utak.kb.explanation.proof import explain_decision

@@ -6,14 +6,14 @@ from itertools import combinations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from utak.kb.explanation.programs import DecisionProgram, ExplanationError
-from utak.kb.explanation.values import Absence
-from utak.kb.explanation.whynot import explain_absence
-from utak.kb.reasoning.encodings import encoding_text
 
 from tests.kb.explanation.proof_checker import best_decisions, faults, holds_somewhere
 from tests.kb.explanation.random_facts import ANSWERS, INPUTS, atoms_over, encoding_path, random_facts
 from tests.tables import few
+from utak.kb.explanation.programs import DecisionProgram, ExplanationError
+from utak.kb.explanation.values import Absence
+from utak.kb.explanation.whynot import explain_absence
+from utak.kb.reasoning.encodings import encoding_text
 
 
 def text_of(facts: list[str] | set[str]) -> str:

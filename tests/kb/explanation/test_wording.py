@@ -2,6 +2,7 @@
 
 import pytest
 from clingo.ast import ASTType, parse_string
+
 from utak.kb.explanation.wording import absent_words, comparison_claim, comparison_words
 from utak.kb.reasoning.sentences import PredicateWords
 from utak.kb.tracing.instrument import literal_info

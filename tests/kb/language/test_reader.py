@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+from tests.tables import few
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.kb.language.reader import facts_from_text, read_facts
 from utak.kb.language.terms import Number, Symbol, Text
-
-from tests.tables import few
 
 GIVEN_UP = (
     60.0  # seconds of processor time: many times what linear reading takes, far less than quadratic reading would take

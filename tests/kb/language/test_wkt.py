@@ -4,6 +4,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.wkt import WktError, parse_wkt
 
 GOOD = [

@@ -6,6 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+
+from tests.kb.drawings import walked
+from tests.kb.eyes import impression, random_room, utak_in, world_of
+from tests.kb.localisation.test_tracker import ROOM
 from utak.kb.body import Impression, Move, Release, Turn
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.hypotheses.explanation import Explanation
@@ -19,10 +23,6 @@ from utak.kb.perception.frame import Frame, turned
 from utak.kb.task.task import Task
 from utak.kb.world.object_names import ObjectNames
 from utak.planner.agenda.decider import Decider
-
-from tests.kb.drawings import walked
-from tests.kb.eyes import impression, random_room, utak_in, world_of
-from tests.kb.localisation.test_tracker import ROOM
 
 Point = tuple[float, float]
 

@@ -5,6 +5,7 @@ from typing import cast
 
 import numpy as np
 import pytest
+
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
 from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection

@@ -7,6 +7,11 @@ import numpy as np
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
+
+from tests.kb.drawings import LARGE_ROOM, walked
+from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
+from tests.tables import few
 from utak.kb.body import Move, Push, Turn
 from utak.kb.localisation.field_account import CellStatus
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
@@ -16,11 +21,6 @@ from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.frame import CENTRE, Frame, turned
-
-from tests.kb.drawings import LARGE_ROOM, walked
-from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
-from tests.tables import few
 
 ROOM = [
     "b" * 30,

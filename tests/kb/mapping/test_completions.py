@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+
+from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from utak.geometry.counts.gibbs import DRAWN, OCCUPIED
 from utak.kb.mapping.completions import (
     DRAWS_PER_COMPLETION,
@@ -14,8 +16,6 @@ from utak.kb.mapping.completions import (
     scenes,
 )
 from utak.kb.mapping.occupancy import MapView
-
-from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 LOOKS = [(20, 20), (22, 21), (23, 23)]
 NEAR_THE_WALL = (34, 20, 6, 3)  # east, north, wide, high

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Point, affinity, box
+
+from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from utak.geometry.counts.gibbs import DRAWN
 from utak.geometry.counts.moments import Blobs, blobs
 from utak.kb.mapping.object_heat import end_probability, likeness, summarise_completions
 from utak.kb.mapping.occupancy import OPEN
-
-from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 
 @pytest.mark.parametrize(("wide", "high", "square"), [(5, 5, True), (4, 4, True), (8, 3, False), (10, 2, False)])

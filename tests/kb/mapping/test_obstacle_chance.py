@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+
 from utak.geometry.counts import gibbs
 from utak.geometry.counts.gibbs import DRAWN
 from utak.kb.mapping.completions import MAX_COMPLETIONS, Completions

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.eyes import Occupied, random_room, retina, world_of
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Frame, Samples
 from utak.kb.perception.retina import OWN_FIELD, count_ranges
-
-from tests.kb.eyes import Occupied, random_room, retina, world_of
 
 seeds = st.integers(0, 2**32 - 1)
 

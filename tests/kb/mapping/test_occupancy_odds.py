@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+
+from tests.kb.eyes import random_room, retina, world_of
 from utak.kb.mapping.occupancy import OccupancyMap
 from utak.kb.perception.frame import Frame
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import random_room, retina, world_of
 
 
 @pytest.mark.parametrize("seed", [1, 2])

@@ -9,6 +9,9 @@ import shapely
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
+
+from tests.kb.eyes import impression, random_room, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, predicted_outcome
 from utak.kb.mapping.occupancy import OccupancyMap
@@ -16,9 +19,6 @@ from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, outline_tolerance, snap_to_grid, subtract_held_objects
 from utak.kb.perception.frame import Frame
 from utak.kb.perception.retina import FIELDS, OWN_FIELD, count_ranges
-
-from tests.kb.eyes import impression, random_room, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
 
 BRICK = shapely.box(0, 0, 4, 2)
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])

@@ -4,6 +4,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
+
 from utak.geometry.motion.se2 import Translate
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, initial_insets

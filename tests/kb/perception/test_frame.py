@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+from tests.kb.eyes import sampled
 from utak.kb.body import DIRECTIONS
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, SAMPLING_TIE_TOLERANCE, Frame, turned
 from utak.kb.perception.retina import FIELDS, OWN_FIELD
 from utak.simulator.world.senses import Senses
-
-from tests.kb.eyes import sampled
 
 length = st.floats(-100, 100).map(lambda v: round(v, 6))
 vector = st.tuples(length, length)

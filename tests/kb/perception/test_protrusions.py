@@ -5,6 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+
 from utak.geometry.raster.components import components
 from utak.kb.perception.protrusions import (
     MAX_THING_LENGTH,

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from utak.kb.perception.regions import Percept, impression_regions, label_of, map_regions
-from utak.kb.perception.retina import FIELDS, OWN_FIELD, edge_fields, neighbours
 
 from tests.kb.eyes import retina, world_of
+from utak.kb.perception.regions import Percept, impression_regions, label_of, map_regions
+from utak.kb.perception.retina import FIELDS, OWN_FIELD, edge_fields, neighbours
 
 STEPS = ((1, 0), (-1, 0), (0, 1), (0, -1))
 

@@ -5,6 +5,7 @@ from math import floor
 
 import numpy as np
 import pytest
+
 from utak.kb.perception.retina import (
     FIELDS,
     OWN_FIELD,

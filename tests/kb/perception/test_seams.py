@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+
 from utak.geometry.raster.components import components
 from utak.kb.perception.regions import map_regions
 from utak.kb.perception.seams import cornered_parts, part_by_colour, part_mixed_regions

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.assumptions import canonical_facts, read_assumptions
 from utak.kb.reasoning.user_rules import read_tested_rules

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.kb.perception.interpretation import (
     FELT_OBJECT_CONFIDENCE,
     LONGEST_OBJECT,

@@ -7,6 +7,7 @@ from contextlib import suppress
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
 

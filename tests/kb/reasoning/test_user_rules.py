@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.encoding_cases import ENCODINGS, case_file
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_path, encoding_text
 from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
@@ -14,8 +16,6 @@ from utak.kb.reasoning.rule_solver import solve_with_rules
 from utak.kb.reasoning.rulebook import INTERNAL_PREDICATES
 from utak.kb.reasoning.solver import solve
 from utak.kb.reasoning.user_rules import RULE_LIMITS, RuleLimits, read_rules, read_tested_rules, solve_with_user_rules
-
-from tests.encoding_cases import ENCODINGS, case_file
 
 FACTS = ["region(a,zero,100)"]
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model
 from utak.kb.language.diagnostics import SourceSpan
 from utak.kb.language.terms import Symbol
 from utak.kb.task.binding import reconcile
 from utak.kb.task.task import Claim, Parameter, Task
 from utak.kb.world.model import Node
-
-from tests.kb.drawings import known_model
 
 NOWHERE = SourceSpan(0, 0, 0)
 MODEL = known_model(["bbbbbbbbb", "b.......b", "b.ggg.h.b", "b.ggg...b", "b....U..b", "bbbbbbbbb"])

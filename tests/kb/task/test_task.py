@@ -6,6 +6,7 @@ import clingo
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.vocabulary import GOAL_CONDITIONS, check_goal_table

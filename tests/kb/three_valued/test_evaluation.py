@@ -8,6 +8,7 @@ import clingo
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.reasoning.query import QueryEngine
 
 THINGS, ROOMS, SHAPES, COLOURS = ("o1", "o2", "o3"), ("r1", "r2"), ("square", "brick"), ("g", "h")

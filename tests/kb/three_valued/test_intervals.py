@@ -4,6 +4,7 @@ from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.kb.reasoning.query_worker import answer_query
 from utak.kb.three_valued.term_values import deciding_numbers
 from utak.kb.three_valued.uncertain_values import COMPARISON_OPERATORS, Unknown, compare

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+
 from utak.kb.reasoning.query_worker import answer_query
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "asking.md"

@@ -8,15 +8,15 @@ import shapely
 import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model
+from tests.kb.eyes import random_room
 from utak.kb.language.vocabulary import CORNER_NAMES
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN
 from utak.kb.mapping.patch import patch_of
 from utak.kb.world.corners import corners, known_floor
 from utak.kb.world.model import Node
 from utak.planner.screen.projection import dilate
-
-from tests.kb.drawings import known_model
-from tests.kb.eyes import random_room
 
 SIGNS = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "southwest": (-1, -1)}
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+
+from tests.kb.drawings import known_model
+from tests.kb.eyes import colours_of, impression, utak_in, world_of
 from utak.kb.body import Grasp, Move, Push, Release
 from utak.kb.knowledge import Knowledge
 from utak.kb.perception.interpretation import FELT_OBJECT_CONFIDENCE
 from utak.kb.world.objects import MapRegions, separate_felt_things
-
-from tests.kb.drawings import known_model
-from tests.kb.eyes import colours_of, impression, utak_in, world_of
 
 Mask = NDArray[np.bool_]
 BETWEEN_WALLS = [

@@ -8,6 +8,9 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model, walked
+from tests.kb.eyes import impression, utak_in, world_of
 from utak.kb.body import Grasp, Move, Release
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
@@ -20,9 +23,6 @@ from utak.kb.world.model import MAX_FREE_PROBABILITY, count_open_squares
 from utak.kb.world.object_names import ObjectNames
 from utak.kb.world.objects import lay_upon
 from utak.kb.world.rooms import rooms_of
-
-from tests.kb.drawings import known_model, walked
-from tests.kb.eyes import impression, utak_in, world_of
 
 
 def box(x: int, y: int, wide: int, high: int) -> Patch:

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-from utak.kb.world.place_names import PlaceNames
-from utak.kb.world.rooms import Door, Rooms, rooms_of
 
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_rules import WALKER
+from utak.kb.world.place_names import PlaceNames
+from utak.kb.world.rooms import Door, Rooms, rooms_of
 
 
 def test_a_door_keeps_its_name_and_gives_it_to_no_other() -> None:

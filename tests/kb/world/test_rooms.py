@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+from tests.kb.drawings import known_model, unclear
+from tests.planner.situations import situation_of
 from utak.kb.perception.interpretation import interpret_regions
 from utak.kb.perception.regions import map_regions
 from utak.kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from utak.kb.world.rooms import rooms_of
 from utak.planner.deciding.search import island_contacts
-
-from tests.kb.drawings import known_model, unclear
-from tests.planner.situations import situation_of
 
 
 def two_rooms(door: int, wall: int, high: int = 14, wide: int = 12) -> list[str]:

@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.vocabulary import PLAN_PREDICATES, ROBOT
 from utak.kb.world.stated_plan import SETTLING_WORDS, StatedPlan, stated_plan

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 import pytest
+
+from tests.kb.drawings import known_model
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import facts_from_text
 from utak.kb.task.task import Task
 from utak.kb.tracing.decisions import SolverCall, record_decisions
 from utak.planner.agenda.decider import Decider
 from utak.planner.decision import Decision
-
-from tests.kb.drawings import known_model
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
 NEXT_ROOM = Task({}, (), facts_from_text("in(utak, room(next))."))

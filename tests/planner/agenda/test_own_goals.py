@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 import pytest
+
+from tests.planner.situations import BESIDE_A_THING, all_felt, known_situation, situation_of, turn_of
 from utak.kb.language.reader import facts_from_text
 from utak.planner.agenda.own_goals import OwnGoals
 from utak.planner.decision import TaskVerdict
@@ -10,8 +12,6 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.stages import Stage
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.setting import WhereGoalsHold
-
-from tests.planner.situations import BESIDE_A_THING, all_felt, known_situation, situation_of, turn_of
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,10 @@ from typing import Any, NamedTuple, cast
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
+
+from benchmarks.harness.trial import Conditions, run_trial
+from tests.planner.situations import watched_robot
+from tests.tables import few
 from utak.geometry.motion.se2 import Translate
 from utak.kb.body import Body, Command, Grasp, Move, Push, Release, Turn
 from utak.kb.task.task import Task
@@ -28,10 +32,6 @@ from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Result, Session
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.harness.trial import Conditions, run_trial
-from tests.planner.situations import watched_robot
-from tests.tables import few
 
 ROOM = ["b" * 30, *["b" + "." * 28 + "b"] * 18, "b" * 30]
 

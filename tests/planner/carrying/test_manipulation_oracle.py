@@ -8,6 +8,9 @@ from typing import cast
 import pytest
 import shapely
 import shapely.affinity
+
+from tests.kb.drawings import known_model
+from tests.planner.situations import situation_of
 from utak.geometry.cspace.bottleneck import Bottleneck
 from utak.geometry.cspace.plan_motion import MotionPlan
 from utak.geometry.manipulation.plan_carrying import CarryingPlan, Inside
@@ -26,9 +29,6 @@ from utak.planner.carrying.manipulation_oracle import (
     Request,
 )
 from utak.planner.goals.placement import POSSIBLE_OBJECT
-
-from tests.kb.drawings import known_model
-from tests.planner.situations import situation_of
 
 PARTED = [
     "b" * 24,

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+from tests.kb.drawings import known_model
+from tests.planner.situations import situation_of
 from utak.kb.world.model import WorldModel
 from utak.planner.carrying.open_facts import nearest_open_fact, open_fact_against, possible_width, proof_if_not_found
 from utak.planner.decision import impossible
 from utak.planner.sights.walls import FeelingScope, unfelt_walls
-
-from tests.kb.drawings import known_model
-from tests.planner.situations import situation_of
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
 WITH_A_THING = ["bbbbbbbbb", "b.......b", "b..U.gg.b", "b....gg.b", "b.......b", "bbbbbbbbb"]

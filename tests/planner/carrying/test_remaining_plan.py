@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 import shapely
 from shapely.affinity import translate
+
+from benchmarks.harness.trial import Conditions, run_trial
+from tests.planner.situations import watched_robot
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Rotate
 from utak.kb.world.model import Node, WorldModel
@@ -21,9 +24,6 @@ from utak.planner.carrying.remaining_plan import (
 )
 from utak.planner.goals.placement import meets_end, to_view_frame
 from utak.planner.situation import Situation
-
-from benchmarks.harness.trial import Conditions, run_trial
-from tests.planner.situations import watched_robot
 
 
 def turns(plan: RemainingPlan) -> bool:

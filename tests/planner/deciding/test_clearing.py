@@ -5,6 +5,9 @@ from dataclasses import replace
 import pytest
 import shapely
 import shapely.affinity
+
+from tests.planner.situations import all_felt, situation_of, tools_with, turn_of
+from tests.planner.situations import known_situation as known
 from utak.geometry.manipulation.plan_carrying import At, Inside
 from utak.geometry.motion.se2 import Pose
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach
@@ -18,9 +21,6 @@ from utak.planner.decision import Decision
 from utak.planner.goals.placement import possible_extension, pull_out_end, to_view_frame
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
-
-from tests.planner.situations import all_felt, situation_of, tools_with, turn_of
-from tests.planner.situations import known_situation as known
 
 WALL = "b" * 12 + "bb" + "b" * 12
 OPEN_ROW = "b" + "." * 11 + "bb" + "." * 11 + "b"

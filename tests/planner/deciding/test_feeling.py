@@ -6,6 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from benchmarks.worlds.filled.doorplugs import plugged_world
+from benchmarks.worlds.scenes import write
+from tests.kb.drawings import known_model
+from tests.planner.situations import all_felt, situation_of, turn_of
+from tests.tables import few
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
 from utak.planner.carrying.open_facts import nearest_open_fact
@@ -15,12 +21,6 @@ from utak.planner.stages import Stage
 from utak.simulator.run.session import Result, Session
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.worlds.filled.doorplugs import plugged_world
-from benchmarks.worlds.scenes import write
-from tests.kb.drawings import known_model
-from tests.planner.situations import all_felt, situation_of, turn_of
-from tests.tables import few
 
 UTAK = Stage(facts_from_text("in(utak, room(next))."))
 CASES = Path("/work/shared/cases")

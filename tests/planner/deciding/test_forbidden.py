@@ -6,17 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from utak.kb.task.task import Task
-from utak.kb.world.rooms import Door, count_crossings, went_through
-from utak.planner.deciding.keeping import ConstraintKeeper
-from utak.planner.screen.projection import UNSEEN_LEVEL
-from utak.planner.situation import Situation
 
 import utak
 from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import situation_of
+from utak.kb.task.task import Task
+from utak.kb.world.rooms import Door, count_crossings, went_through
+from utak.planner.deciding.keeping import ConstraintKeeper
+from utak.planner.screen.projection import UNSEEN_LEVEL
+from utak.planner.situation import Situation
 
 DOOR = Door("d1", (5.0, 2.0), (5.0, 5.0), (1, 2), 99)
 WALL = "b" + "." * 11 + "bb" + "." * 11 + "b"

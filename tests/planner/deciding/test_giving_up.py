@@ -5,6 +5,8 @@ from dataclasses import replace
 from typing import cast
 
 import shapely
+
+from tests.planner.test_cycle import EMPTY, SQUARE, DrawnBody
 from utak.kb.body import Command, Impression, Move, Release
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.task.task import Task
@@ -14,8 +16,6 @@ from utak.kb.world.rooms import rooms_of
 from utak.planner.agenda.decider import Decider
 from utak.planner.cycle import Options, Robot
 from utak.planner.decision import Decision, TaskVerdict
-
-from tests.planner.test_cycle import EMPTY, SQUARE, DrawnBody
 
 
 class Handed(DrawnBody):

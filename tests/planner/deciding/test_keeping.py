@@ -6,6 +6,11 @@ from typing import Any
 
 import pytest
 import shapely
+
+from tests.planner.carrying.test_carrying import run, scene
+from tests.planner.situations import known_situation
+from tests.planner.test_constraints import ROWS, box, situation_for
+from tests.tables import few
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
 from utak.kb.task.task import Task
@@ -16,11 +21,6 @@ from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Session
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-from tests.planner.carrying.test_carrying import run, scene
-from tests.planner.situations import known_situation
-from tests.planner.test_constraints import ROWS, box, situation_for
-from tests.tables import few
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 TWO_ROOMS = """table(32, 16).

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+from tests.planner.situations import all_felt, known_situation
+from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET, POCKET_GOAL, pose
 from utak.geometry.manipulation.goals import At
 from utak.geometry.motion.se2 import Pose
 from utak.kb.body import Move
@@ -12,9 +14,6 @@ from utak.planner.agenda.decider import Decider
 from utak.planner.carrying.plan_executor import PlanExecutor
 from utak.planner.decision import Decision, TaskVerdict
 from utak.simulator.explaining.fixing.recorded import task_from_texts
-
-from tests.planner.situations import all_felt, known_situation
-from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET, POCKET_GOAL, pose
 
 
 def decided(decider: Decider, model: WorldModel) -> tuple[Decision, list[SolverCall]]:

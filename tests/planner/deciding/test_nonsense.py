@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.eyes import impression, random_room, utak_in, world_of
+from tests.planner.test_cycle import NORTHEAST, SQUARE
 from utak.kb.body import Command, Impression
 from utak.kb.perception.retina import FIELDS, OWN_FIELD
 from utak.kb.task.task import Task
 from utak.planner.cycle import Options, Robot
 from utak.planner.decision import TaskVerdict
-
-from tests.kb.eyes import impression, random_room, utak_in, world_of
-from tests.planner.test_cycle import NORTHEAST, SQUARE
 
 LEVELS = {1: (0, 7), 2: (0, 2, 4, 5, 7), 4: tuple(range(8))}
 

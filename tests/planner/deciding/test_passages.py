@@ -5,6 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+import utak
+from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
+from tests.tables import few
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
 from utak.kb.localisation.hypotheses.walk_outcomes import squares_passed
@@ -13,10 +17,6 @@ from utak.planner.screen.moves import EDGE_OFFSET
 from utak.planner.sights.passages import SAME_LINE
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
-
-import utak
-from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
-from tests.tables import few
 
 TWO = ["b" * 16, *["b" + "." * 6 + "bb" + "." * 6 + "b"] * 4, "b...U..bb......b", "b" * 16]
 WALK = Stage(facts_from_text("in(utak, room(next))."))

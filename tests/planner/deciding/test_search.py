@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+from tests.planner.sights.test_viewpoints import distance_from, room
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.planner.deciding.search import Candidate, chance_of_none
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.projection import dilate, indices_to_mask
 from utak.planner.sights.frontiers import LOOK_AHEAD_RANGE, look_ahead_squares
 from utak.planner.subgoal_kind import SubgoalKind
-
-from tests.planner.sights.test_viewpoints import distance_from, room
 
 
 @given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1))

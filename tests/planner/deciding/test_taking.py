@@ -7,6 +7,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 import shapely
+
+from tests.kb.drawings import known_model
+from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with, turn_of
 from utak.geometry.manipulation.plan_carrying import CarryingPlan, Inside, Leg
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.kb.body import Command, Grasp, Move, Push, Release
@@ -26,9 +29,6 @@ from utak.planner.goals.placement import Placement
 from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
-
-from tests.kb.drawings import known_model
-from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with, turn_of
 
 NOTHING: tuple[str | None, ...] = (None,) * 8
 EAST, NORTHWEST = 2, 7

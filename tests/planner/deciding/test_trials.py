@@ -2,13 +2,12 @@
 
 from dataclasses import replace
 
+from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
 from utak.kb.body import Grasp, Move, Push, Release
 from utak.kb.language.reader import facts_from_text
 from utak.planner.deciding.trials import Trials
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
-
-from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
 
 SMALL = ["bbbbbbbbbbbb", "b..........b", "b..gg......b", "b..gg...U..b", "b..........b", "bbbbbbbbbbbb"]
 LARGE = ["b" * 24, *["b" + "." * 22 + "b"] * 2, *["b..gggggggggggggg......b"] * 5, "b....................U.b", "b" * 24]

@@ -6,6 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+
+from tests.kb.drawings import known_model, walked
+from tests.kb.eyes import utak_in
+from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, turn_of
 from utak.geometry.manipulation.plan_carrying import Inside
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
@@ -26,10 +30,6 @@ from utak.planner.deciding.verification import (
 )
 from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.stages import Stage
-
-from tests.kb.drawings import known_model, walked
-from tests.kb.eyes import utak_in
-from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, turn_of
 
 AT_START = replace(NO_TASK, goals=facts_from_text("at(utak, start)."))
 NARROW = [

@@ -4,14 +4,14 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from utak.geometry.manipulation.goals import At, End, InCorner, Inside, is_goal_met, shape_at_pose
-from utak.geometry.motion.se2 import Pose
-from utak.planner.goals.joint import conflicting_goals, enclosing_region, opposite_corners_reason
-from utak.planner.goals.placement import Placement
 
 from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import BESIDE_A_THING, situation_of
+from utak.geometry.manipulation.goals import At, End, InCorner, Inside, is_goal_met, shape_at_pose
+from utak.geometry.motion.se2 import Pose
+from utak.planner.goals.joint import conflicting_goals, enclosing_region, opposite_corners_reason
+from utak.planner.goals.placement import Placement
 
 THING = shapely.box(3, 3, 6, 5)
 NORTHEAST, SOUTHWEST = InCorner(20.0, 16.0, 1, 1), InCorner(0.0, 0.0, -1, -1)

@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 import shapely
 import shapely.affinity
+
+from tests.kb.drawings import known_model, unclear
+from tests.planner.situations import known_situation, situation_of
 from utak.kb.language.reader import facts_from_text
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.world.corners import Corner
@@ -14,9 +17,6 @@ from utak.kb.world.model import Node, WorldModel
 from utak.planner.carrying.plan_executor import PlanExecutor
 from utak.planner.goals.object_goals import goal_placement
 from utak.planner.goals.placement import Placement, meets_end
-
-from tests.kb.drawings import known_model, unclear
-from tests.planner.situations import known_situation, situation_of
 
 SHUT_IN = [
     "b" * 20,

@@ -7,6 +7,9 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model, unclear
+from tests.planner.situations import situation_of
 from utak.geometry.manipulation.goals import End
 from utak.geometry.manipulation.plan_carrying import Inside
 from utak.kb.world.model import Node, WorldModel
@@ -14,9 +17,6 @@ from utak.planner.carrying.manipulation_oracle import ManipulationOracle, Manipu
 from utak.planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor, spread_into_unseen
 from utak.planner.screen.projection import UNSEEN_LEVEL, indices_to_mask
 from utak.planner.situation import Situation
-
-from tests.kb.drawings import known_model, unclear
-from tests.planner.situations import situation_of
 
 HALF_SEEN = [  # the room goes on beyond its seen part
     "b" * 22 + "??",

@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 import shapely
 import shapely.affinity
-from utak.kb.world.rooms import Rooms
-from utak.planner.goals.origins import Origins
-from utak.planner.situation import Situation
 
 from tests.kb.drawings import known_model
 from tests.planner.situations import BESIDE_A_THING, situation_of
+from utak.kb.world.rooms import Rooms
+from utak.planner.goals.origins import Origins
+from utak.planner.situation import Situation
 
 TWO_ROOMS = [
     "b" * 33,

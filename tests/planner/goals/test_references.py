@@ -1,15 +1,15 @@
 """Of goals that name two things, or a thing and a place, whichever may be moved is moved."""
 
 import pytest
-from utak.kb.language.diagnostics import SourceSpan
-from utak.kb.task.task import Parameter, Task
-from utak.planner.goals.references import as_meant, is_moved_for_others_only
-from utak.planner.stages import Stage
 
 import utak
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import known_situation, situation_of
 from tests.tables import few
+from utak.kb.language.diagnostics import SourceSpan
+from utak.kb.task.task import Parameter, Task
+from utak.planner.goals.references import as_meant, is_moved_for_others_only
+from utak.planner.stages import Stage
 
 NOWHERE = SourceSpan(0, 0, 0)
 TASK = Task({name: Parameter(name, "object", NOWHERE) for name in "xyz"}, (), ())

@@ -1,10 +1,10 @@
 """The furthest corner may be in unseen rooms; these are looked for within limits."""
 
 import pytest
-from utak.planner.goals.robot_goals import DOOR_SIDEWARD_REACH, MAX_UNSEEN_REACH, ONWARD_REACH, rooms_to_see
 
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
+from utak.planner.goals.robot_goals import DOOR_SIDEWARD_REACH, MAX_UNSEEN_REACH, ONWARD_REACH, rooms_to_see
 
 DOOR = 2  # columns of wall west of the door
 

@@ -5,6 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+from tests.kb.drawings import known_model
+from tests.planner.situations import situation_of
 from utak.kb.language.diagnostics import SourceSpan
 from utak.kb.language.terms import Symbol
 from utak.kb.task.task import Task
@@ -17,9 +20,6 @@ from utak.planner.screen.projection import CostMaps
 from utak.planner.screen.sweeps import sweep_is_free
 from utak.planner.screen.unseen_gain import GAIN_REACH
 from utak.planner.sights.frontiers import best_views
-
-from tests.kb.drawings import known_model
-from tests.planner.situations import situation_of
 
 WALLS = [
     "b" * 40,

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-from utak.kb.body import Move, Push, Release
-from utak.planner.navigation.loop_guard import LOOP_COST, LoopGuard
-from utak.planner.navigation.subgoals import Subgoal
 
 from tests.kb.drawings import known_model
 from tests.planner.screen.test_projection import HALL
+from utak.kb.body import Move, Push, Release
+from utak.planner.navigation.loop_guard import LOOP_COST, LoopGuard
+from utak.planner.navigation.subgoals import Subgoal
 
 MODEL = known_model(HALL)
 

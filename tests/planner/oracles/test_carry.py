@@ -5,13 +5,13 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from benchmarks.worlds.drawn import drawn_problem, drawn_situation
+from tests.planner.situations import known_situation
 from utak.geometry.manipulation.goals import At, Inside
 from utak.geometry.motion.se2 import Pose, Translate
 from utak.planner.oracles.carry import CarryOracle, Certainty
 from utak.planner.oracles.spots import corner_spots, kept_way_of, spots, turned_corner_outlines
-
-from benchmarks.worlds.drawn import drawn_problem, drawn_situation
-from tests.planner.situations import known_situation
 
 ROOM = [
     "b" * 20,

@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model, walked
+from tests.kb.eyes import random_room
+from tests.tables import few
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.world.model import WorldModel
 from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
@@ -32,10 +36,6 @@ from utak.planner.screen.projection import (
 )
 from utak.planner.screen.sweeps import line_sweep_is_free, swept_offsets
 from utak.planner.sights import frontiers
-
-from tests.kb.drawings import known_model, walked
-from tests.kb.eyes import random_room
-from tests.tables import few
 
 WALKS = few(range(20), 4)  # seeds of random walks, each of which serves several tests
 

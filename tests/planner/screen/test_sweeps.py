@@ -7,6 +7,7 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
 from utak.planner.screen.sweeps import line_sweep_is_free, squares_along, sweep_is_free, swept_offsets
 
 whole = st.integers(-9, 9)

@@ -4,6 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+from tests.kb.drawings import drawing, known_model
+from tests.planner.situations import situation_of
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.language.reader import facts_from_text
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN
@@ -15,9 +18,6 @@ from utak.planner.screen.moves import CARRYING_PACE, one_move_squares
 from utak.planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, dilate
 from utak.planner.sights.frontiers import FOVEA_RANGE, MIDDLE_ZONE_RANGE
 from utak.planner.sights.viewpoints import MIN_APPROACH_PROBABILITY, TO_REACH, TO_TAKE, Approach, inspection_squares
-
-from tests.kb.drawings import drawing, known_model
-from tests.planner.situations import situation_of
 
 ROOM = [row[:4] + "U" + row[5:] if k == 38 else row for k, row in enumerate(drawing(30, 20, 4, 4))]
 

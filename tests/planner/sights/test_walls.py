@@ -5,6 +5,9 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model
+from tests.planner.situations import all_felt
 from utak.kb.world.model import WorldModel
 from utak.planner.screen.projection import CostMaps
 from utak.planner.sights.walls import (
@@ -15,9 +18,6 @@ from utak.planner.sights.walls import (
     unfelt_walls,
     walls_in_question,
 )
-
-from tests.kb.drawings import known_model
-from tests.planner.situations import all_felt
 
 WALKING = FeelingScope(parting=False)
 CLOSED = ["b" * 12, *["b" + "." * 10 + "b"] * 4, "b...U......b", *["b" + "." * 10 + "b"] * 4, "b" * 12]

@@ -4,6 +4,10 @@ import math
 from dataclasses import replace
 
 import pytest
+
+from tests.kb.drawings import known_model
+from tests.planner.goals.test_object_goals import facts_from_text
+from tests.planner.situations import situation_of
 from utak.kb.body import Grasp, Move
 from utak.planner.situation import Situation
 from utak.planner.skills.into_corner import (
@@ -15,10 +19,6 @@ from utak.planner.skills.into_corner import (
     lies_straight,
 )
 from utak.planner.stages import Stage
-
-from tests.kb.drawings import known_model
-from tests.planner.goals.test_object_goals import facts_from_text
-from tests.planner.situations import situation_of
 
 STRAIGHT_ROOM = ["bbbbbbbb", "b......b", "b......b", "b......b", "b.U....b", "b......b", "bbbbbbbb"]
 ASKEW_ROOM = ["bbbbbbbb", "bbb.bbbb", "bb...bbb", "bb....bb", "b.U....b", "b......b", "bbbbbbbb"]

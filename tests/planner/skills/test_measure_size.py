@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import shapely
 from shapely import affinity
+
+from benchmarks.harness.trial import Conditions, run_trial
 from utak.geometry.manipulation.goals import At
 from utak.kb.mapping.patch import Patch
 from utak.kb.objects.subcell_extent import SubcellExtent
 from utak.kb.world.model import Node
 from utak.planner.skills.measure_size import MAX_SIZE_PUSHES, SizeEstimator
-
-from benchmarks.harness.trial import Conditions, run_trial
 
 
 @pytest.mark.long

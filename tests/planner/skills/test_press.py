@@ -4,6 +4,10 @@ from dataclasses import replace
 
 import pytest
 import shapely
+
+from tests.kb.drawings import known_model
+from tests.planner.goals.test_object_goals import facts_from_text
+from tests.planner.situations import BESIDE_A_THING, situation_of
 from utak.geometry.manipulation.goals import InCorner
 from utak.geometry.motion.se2 import Translate
 from utak.kb.body import Push
@@ -12,10 +16,6 @@ from utak.planner.goals.corner_goal import WALL_DEPTH, _wall_pushes
 from utak.planner.goals.placement import Placement
 from utak.planner.situation import Situation
 from utak.planner.skills.press import Presser
-
-from tests.kb.drawings import known_model
-from tests.planner.goals.test_object_goals import facts_from_text
-from tests.planner.situations import BESIDE_A_THING, situation_of
 
 (GOAL,) = facts_from_text("at(x, corner(northeast)).")
 ACROSS, UP = Translate(1.0, 0.0), Translate(0.0, 1.5)

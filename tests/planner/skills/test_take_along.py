@@ -9,6 +9,9 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model
+from tests.planner.situations import Tools, situation_of, tools_with, turn_of
 from utak.geometry.manipulation.goals import Inside
 from utak.geometry.manipulation.plan_carrying import Leg
 from utak.geometry.manipulation.workspace import Workspace
@@ -31,9 +34,6 @@ from utak.planner.situation import Situation
 from utak.planner.skills.take_along import VIEWPOINT_RADIUS, detour_push, escape_push, region_near, shortest_push
 from utak.planner.stages import Stage
 from utak.planner.subgoal_kind import SubgoalKind
-
-from tests.kb.drawings import known_model
-from tests.planner.situations import Tools, situation_of, tools_with, turn_of
 
 EAST = 2
 ROOM = [

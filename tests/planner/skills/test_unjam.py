@@ -8,14 +8,14 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
+
+from tests.kb.drawings import known_model
 from utak.geometry.motion.se2 import Translate
 from utak.kb.mapping.occupancy import OCCUPIED
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.skills.failed_grasps import MAX_RETRIES, FailedGrasps
 from utak.planner.skills.unjam import RETREAT, ROOM_AHEAD, ROOM_TO_SPARE, retreat_push
-
-from tests.kb.drawings import known_model
 
 DOOR = ["b" * 24, *["b" + "." * 22 + "b"] * 8, "b" * 9 + "." * 6 + "b" * 9]
 DOOR += [

@@ -5,6 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from tests.planner.situations import known_situation
+from tests.planner.tasking.test_wishes import origin, stage_of
 from utak.kb.language.reader import facts_from_text
 from utak.kb.task.binding import Reconciliation, as_well_by_parameter
 from utak.kb.task.task import Task
@@ -17,9 +20,6 @@ from utak.planner.tasking.intention import Intention, with_meanings
 from utak.planner.tasking.rule_effects import rules_without_plan
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.setting import WhereGoalsHold, problem_of
-
-from tests.planner.situations import known_situation
-from tests.planner.tasking.test_wishes import origin, stage_of
 
 WALL = "b" * 34
 IN_POCKET = [  # g lies nearer to the robot, in a pocket: it takes two pushes more than h

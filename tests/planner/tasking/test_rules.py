@@ -5,6 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from benchmarks.worlds.drawn import drawn_problem
+from tests.planner.carrying.test_carrying import run, scene
+from tests.planner.situations import known_situation
+from tests.planner.tasking.test_search import SWAPPED, moved
 from utak.geometry.manipulation.goals import End, Inside
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.body import Grasp
@@ -18,11 +23,6 @@ from utak.planner.tasking.rule_effects import doors_led_round, rules_about_doors
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.setting import WhereGoalsHold, problem_of
 from utak.simulator.scenario.settings import Settings
-
-from benchmarks.worlds.drawn import drawn_problem
-from tests.planner.carrying.test_carrying import run, scene
-from tests.planner.situations import known_situation
-from tests.planner.tasking.test_search import SWAPPED, moved
 
 RULES = Path(__file__).resolve().parents[3] / "docs" / "rules"
 WALL = "b" * 30

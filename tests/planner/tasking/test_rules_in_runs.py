@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 import shapely
+
+import utak
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.user_rules import read_rules
 from utak.planner.tasking.proposal import propose
-
-import utak
 
 TWO_SQUARES = (
     """table(46, 28).

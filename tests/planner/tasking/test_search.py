@@ -6,6 +6,9 @@ from itertools import pairwise
 
 import pytest
 import shapely
+
+from benchmarks.worlds.drawn import drawn_problem
+from tests.planner.situations import known_situation
 from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
 from utak.geometry.motion.se2 import Pose
 from utak.kb.language.vocabulary import ROBOT
@@ -16,9 +19,6 @@ from utak.planner.situation import Situation
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.task_plan import RefutedStep, TaskPlan
 from utak.planner.under_way import UNDER_WAY
-
-from benchmarks.worlds.drawn import drawn_problem
-from tests.planner.situations import known_situation
 
 WALL = "b" * 24
 DEAD_END = [  # g must go to the far end of the corridor, h right into its mouth

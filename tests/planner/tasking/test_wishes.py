@@ -4,6 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from tests.planner.situations import known_situation
+from tests.planner.tasking.test_search import SWAPPED, WALLED_IN
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.vocabulary import ROBOT
 from utak.kb.task.task import Task
@@ -15,9 +18,6 @@ from utak.planner.stages import Stage, stages
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.setting import WhereGoalsHold, goal_of_place, problem_of, wish_of_place
-
-from tests.planner.situations import known_situation
-from tests.planner.tasking.test_search import SWAPPED, WALLED_IN
 
 
 def stage_of(text: str) -> Stage:

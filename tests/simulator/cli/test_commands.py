@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[3]

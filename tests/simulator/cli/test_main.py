@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.planner.navigation.routes import PATH_FINDERS
 from utak.simulator.cli.main import main
 from utak.simulator.scenario.settings import PATH_CHOICES

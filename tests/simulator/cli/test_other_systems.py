@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from random_scenes import write_scene
+
 from utak.kb.language import operating_system
 
 ROOT = Path(__file__).resolve().parents[3]

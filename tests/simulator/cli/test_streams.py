@@ -12,10 +12,10 @@ import scripted_robot
 from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import write_scene
-from utak.simulator.cli.main import main
-from utak.simulator.terminal.streams import GuardedStream, StreamError, escape_controls
 
 from tests.tables import few
+from utak.simulator.cli.main import main
+from utak.simulator.terminal.streams import GuardedStream, StreamError, escape_controls
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "\x1b[2J\x1b]0;owned\x07\r\x9b31m\u202egnp.exe\u2066\x7f\b\u2028"

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.language.source_text import lies_outside, read_source
 from utak.simulator.cli.main import main
 from utak.simulator.episode.schema import complaints

@@ -16,6 +16,7 @@ import scripted_robot
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
+
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode

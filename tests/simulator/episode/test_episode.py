@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import Episode, EpisodeLog, encode, read_episode

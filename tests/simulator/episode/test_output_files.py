@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.language.diagnostics import CannotOpenError
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import EpisodeLog, read_episode

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+
 from utak.kb.body import DIRECTIONS
 from utak.kb.evidence.reason import ReasonKind
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS

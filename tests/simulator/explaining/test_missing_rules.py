@@ -3,6 +3,9 @@
 from pathlib import Path
 
 import pytest
+
+from tests.simulator.replay.replay_episodes import body_of
+from utak.episode import Episode
 from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from utak.simulator.cli.main import main
@@ -12,9 +15,6 @@ from utak.simulator.repl.commands import PROMPT_COMMANDS
 from utak.simulator.repl.dialogue import Dialogue
 from utak.simulator.repl.printer import Printer
 from utak.simulator.run.recorded_story import RecordedStory
-
-from tests.simulator.replay.replay_episodes import body_of
-from utak.episode import Episode
 
 TWO = "2 files of rules took part in this run, and "
 END = "took part in this run"

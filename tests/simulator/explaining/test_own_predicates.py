@@ -1,13 +1,13 @@
 """Questions about predicates that users' rules define: why they hold, and why they do not."""
 
 import pytest
+
+from benchmarks.harness.reasons import complaints
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import Episode, read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
-
-from benchmarks.harness.reasons import complaints
 
 RULES = """\
 big(X) :- object(X), rect(X, W, S, E, N), E - W > 300.

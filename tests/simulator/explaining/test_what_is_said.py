@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.kb.evidence.reason import Depth, ReasonKind
 from utak.kb.language.atoms import atom_parts
 from utak.simulator.cli.main import main

@@ -4,10 +4,10 @@ from codecs import BOM_UTF8
 from pathlib import Path
 
 import pytest
-from utak.simulator.cli.main import main
 
 from benchmarks.malformations.imports import imports
 from benchmarks.malformations.samples import SAMPLES
+from utak.simulator.cli.main import main
 
 PUZZLE = "A M0 G0\n. .  .\n"
 

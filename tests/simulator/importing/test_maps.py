@@ -12,6 +12,7 @@ import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+
 from utak.geometry.raster.contours import outline
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.source_text import Source

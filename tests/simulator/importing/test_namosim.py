@@ -10,6 +10,7 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
 from utak.simulator.cli.main import main
 from utak.simulator.importing.svg_path import SvgError, parse_path, parse_transform
 from utak.simulator.scenario.scenario import Scenario, read_scenario

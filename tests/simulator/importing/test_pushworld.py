@@ -8,6 +8,7 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.cli.main import main
 from utak.simulator.importing.imported import ImportOptions

@@ -8,6 +8,7 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+
 from utak.simulator.cli.main import main
 from utak.simulator.importing.sokoban import _cheapest_owners
 from utak.simulator.scenario.scenario import Scenario, read_scenario

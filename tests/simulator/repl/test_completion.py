@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, SHAPE_CLASSES
 from utak.simulator.repl.completion import completions
 

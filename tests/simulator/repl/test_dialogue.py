@@ -12,6 +12,7 @@ import scripted_robot
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
+
 from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from utak.simulator.cli.main import main

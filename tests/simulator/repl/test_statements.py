@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.simulator.repl.statements import (
     MAX_STATEMENT_CHARACTERS,
     StatementBuffer,

@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 
 pty = pytest.importorskip("pty")  # not on Windows

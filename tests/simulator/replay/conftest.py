@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.episode.episode import Episode
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 from replay_episodes import hostile
+
+from benchmarks.harness.browser import CHROMIUM, Browser
 from utak.simulator.episode.episode import Episode
 from utak.simulator.replay.events import episode_events
 from utak.simulator.replay.page import replay_page, slim
-
-from benchmarks.harness.browser import CHROMIUM, Browser
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium was found")
 MAX_FIRST_PICTURE_MILLISECONDS = 300

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 
 import pytest
 from replay_episodes import HOSTILE, ROOT, body_of, hostile
+
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import Episode, encode
 from utak.simulator.explaining.trees import trees_of_episode

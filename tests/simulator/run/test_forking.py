@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+import utak
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import encode, read_episode
 from utak.simulator.run.live_story import LiveStory
 from utak.simulator.run.recorded_story import WORLD_KEYS
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-
-import utak
 
 ROOT = Path(__file__).resolve().parents[3]
 EXERCISES = ROOT / "docs" / "exercises"

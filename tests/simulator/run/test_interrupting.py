@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from utak.simulator.repl.commands import PROMPT_COMMANDS

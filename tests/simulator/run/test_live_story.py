@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.task.task import Task
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.task.task import Task
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import EpisodeLog, read_episode

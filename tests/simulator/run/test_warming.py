@@ -10,6 +10,7 @@ from pathlib import Path
 from shutil import copytree, ignore_patterns
 
 import pytest
+
 from utak.simulator.run import warming
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[3]

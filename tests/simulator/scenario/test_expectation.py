@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 import shapely
 from shapely.affinity import translate
+
+from benchmarks.harness.judging import judge_module, judge_path
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.scenario.expectation import Snapshot, read_expectations, shortfalls, should_fail, unmet
 from utak.simulator.scenario.points import PointScore, judge_expectations, score
 from utak.simulator.world.world import Thing, World
-
-from benchmarks.harness.judging import judge_module, judge_path
 
 T1 = shapely.box(4, 4, 6, 6)
 PILLAR = Thing("p1", "h", shapely.box(1, 8, 2, 9))

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.scenario.trialfile import answers_as_wanted, read_trial_plan
 

@@ -8,6 +8,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.scenario.picture import draw, read_picture
 from utak.simulator.scenario.scenario import read_any_world

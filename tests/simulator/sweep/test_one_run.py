@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import scripted_robot
 from random_scenes import write_scene
+
 from utak.kb.body import Body
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.task.task import Task

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.simulator.scenario.settings import Settings
 from utak.simulator.sweep.contents import ScenarioContents, names_of, read_contents, written
 from utak.simulator.sweep.plan import SweepPlan, SweepRun, parse_seeds, written_seeds

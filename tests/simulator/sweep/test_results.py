@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.sweep.results import PassingResults, ResultRow, RowForm, encode_row, open_results
 

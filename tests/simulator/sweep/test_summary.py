@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.simulator.sweep.carrying_out import problem_of
 from utak.simulator.sweep.picture import log_ticks, sweep_picture
 from utak.simulator.sweep.results import ResultRow

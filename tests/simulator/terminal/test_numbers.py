@@ -13,6 +13,7 @@ import scripted_robot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
+
 from utak.geometry.io.movingai import MapError, parse_map
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import facts_from_text

@@ -4,6 +4,7 @@ import itertools
 import sys
 
 import pytest
+
 from utak.planner.under_way import UNDER_WAY
 from utak.simulator.terminal.progress import Progress, StepProgress, duration
 

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.cli.main import main
 from utak.simulator.testing.handle import WorkerEndedError, WorkerHandle
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
+
 from utak.simulator.testing.junit import as_junit
 from utak.simulator.testing.record import Wish, without_run
 

@@ -7,6 +7,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.senses import NEIGHBOUR_OFFSETS

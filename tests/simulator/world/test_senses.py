@@ -8,6 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate
+
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.senses import NEIGHBOUR_OFFSETS, Senses, retina_fields
 from utak.simulator.world.table import Table

@@ -18,14 +18,13 @@ from tests.tables import few
 gymnasium = pytest.importorskip("gymnasium")
 env_checker = pytest.importorskip("gymnasium.utils.env_checker")
 
-from utak.kb.body import DIRECTIONS, Grasp, Move, Push, Release, Turn  # noqa: E402
-from utak.simulator.run.embodiment import Embodiment  # noqa: E402
-from utak.simulator.world.physics import Tabletop  # noqa: E402
-
 import utak  # noqa: E402
 import utak.gym  # noqa: E402
 from utak.gym.actions import STEP_VECTORS, action_form  # noqa: E402
 from utak.gym.environment import TabletopEnv  # noqa: E402
+from utak.kb.body import DIRECTIONS, Grasp, Move, Push, Release, Turn  # noqa: E402
+from utak.simulator.run.embodiment import Embodiment  # noqa: E402
+from utak.simulator.world.physics import Tabletop  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "examples"

@@ -6,14 +6,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from utak.gym.progress import ExpectationProgress, time_limit
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.terms import Fact
 from utak.simulator.scenario.expectation import Snapshot, unmet
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.senses import NEIGHBOUR_OFFSETS
 from utak.simulator.world.world import Thing, World
-
-from utak.gym.progress import ExpectationProgress, time_limit
 
 VERGE = shapely.box(0, 0, 16, 14).difference(shapely.box(1, 1, 15, 13))
 THINGS = (Thing("a", "g", shapely.box(7, 6, 9, 8)), Thing("d", "d", shapely.Polygon([(3, 3), (5, 3), (3, 5)])))

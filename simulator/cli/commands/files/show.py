@@ -60,6 +60,7 @@ def _table(options: argparse.Namespace) -> tuple[Any, Any, Any, str]:
         world = read_any_world(Path(options.source))
         return world, None, None, _picture_of_world(world) if options.svg is not None else ""
     import shapely
+
     from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
     from utak.simulator.episode.episode import read_begun_episode
     from utak.simulator.episode.record import recorded_world

@@ -8,6 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
+
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.kb.eyes import random_room, retina, world_of
 from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
     FRAME_ANGLES,
@@ -25,8 +27,6 @@ from utak.kb.localisation.hypotheses.frames import (
 )
 from utak.kb.perception.frame import CENTRE, Frame, turned
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import random_room, retina, world_of
 
 Point = tuple[float, float]
 

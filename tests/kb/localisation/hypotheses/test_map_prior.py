@@ -4,6 +4,10 @@ import math
 
 import numpy as np
 import pytest
+
+from tests.kb.drawings import LARGE_ROOM, drawing, looked
+from tests.kb.eyes import impression, random_room, world_of
+from tests.tables import few
 from utak.geometry.counts.gibbs import CORNER_COST
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
@@ -24,10 +28,6 @@ from utak.kb.localisation.hypotheses.map_prior import (
 from utak.kb.mapping.occupancy import OccupancyMap
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.drawings import LARGE_ROOM, drawing, looked
-from tests.kb.eyes import impression, random_room, world_of
-from tests.tables import few
 
 LOOKS = [(20, 20), (21, 22), (25, 24)]
 LONG_ROOM = ["b" * 80, *["b" * 2 + "." * 76 + "b" * 2] * 20, "b" * 80]

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
+from tests.kb.eyes import Occupied, impression, random_room, world_of
+from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
 from utak.kb.localisation.hypotheses.reestimation import reestimate_two_walks, reestimate_walk
 from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
 from utak.kb.mapping.occupancy import OCCUPIED, OccupancyMap
 from utak.kb.perception.frame import Frame, turned
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import Occupied, impression, random_room, world_of
-from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 
 
 @pytest.mark.long

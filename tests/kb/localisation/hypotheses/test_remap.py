@@ -7,13 +7,13 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
+
+from tests.kb.eyes import Occupied, retina, world_of
 from utak.kb.localisation.hypotheses.frames import ObjectPose, Observation
 from utak.kb.localisation.hypotheses.remap import RemapCache, ReplayPrefixes, object_pose, remap, shift_object
 from utak.kb.objects.held_object import HeldObject, snap_to_grid
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import Occupied, retina, world_of
 
 ELL = shapely.Polygon([(0, 0), (5, 0), (5, 2), (2, 2), (2, 5), (0, 5)])
 ROOM = [

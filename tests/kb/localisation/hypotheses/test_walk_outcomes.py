@@ -5,6 +5,7 @@ from itertools import pairwise
 
 from hypothesis import assume, given
 from hypothesis import strategies as st
+
 from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, entered_square, line_crossings
 
 AWAY = st.floats(-9, 9, allow_nan=False).map(lambda v: round(v, 3))

@@ -5,6 +5,10 @@ import math
 import pytest
 import shapely
 from shapely.affinity import translate
+
+from tests.kb.drawings import LARGE_ROOM
+from tests.kb.eyes import Occupied, impression, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
 from utak.geometry.motion.se2 import Translate
 from utak.kb.body import Move, Push
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES
@@ -15,10 +19,6 @@ from utak.kb.mapping.completions import NO_COMPLETIONS, draw_completions, given_
 from utak.kb.mapping.occupancy import FREE
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.drawings import LARGE_ROOM
-from tests.kb.eyes import Occupied, impression, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
 
 CORRIDOR = ["b" * 60, *["b" * 6 + "." * 5 + "b" * 49] * 6, *["b" * 6 + "." * 50 + "bbbb"] * 8, "b" * 60]
 BRICK = shapely.box(0, 0, 2, 4)

@@ -6,6 +6,9 @@ from dataclasses import replace
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
+
+from tests.kb.eyes import retina, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
 from utak.geometry.motion.se2 import Rotate
 from utak.kb.body import Turn
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
@@ -17,9 +20,6 @@ from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import retina, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 6), (4, 6), (4, 2), (0, 2)])
 HOLD = (2.5, 2.5)  # in its inner corner

@@ -9,6 +9,10 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
+
+from tests.kb.eyes import Occupied, random_room, retina, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
+from tests.kb.localisation.test_tracker import first_contact
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
 from utak.kb.body import Move, Push
@@ -20,10 +24,6 @@ from utak.kb.localisation.propose.earlier_motion import ReestimatedMotion, reest
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import Occupied, random_room, retina, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
-from tests.kb.localisation.test_tracker import first_contact
 
 SIDE = 34
 BRICK = shapely.box(0, 0, 3, 2)

@@ -9,16 +9,6 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
-from utak.geometry.motion.first_contact import ContactBody, Obstacles
-from utak.geometry.motion.se2 import Translate
-from utak.kb.body import Move, Push, Turn
-from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST
-from utak.kb.localisation.hypotheses.remap import object_pose
-from utak.kb.localisation.hypotheses.what_if import Surprise
-from utak.kb.localisation.propose.frame import blocked_pushes_with_origin
-from utak.kb.localisation.propose.origin import COARSE_ORIGINS
-from utak.kb.objects.held_object import HeldObject
-from utak.kb.perception.frame import CENTRE, Frame
 
 from tests.kb.localisation.hypotheses.test_remap import around
 from tests.kb.localisation.propose.test_earlier_motion import (
@@ -30,6 +20,16 @@ from tests.kb.localisation.propose.test_earlier_motion import (
     square_of,
     surprised,
 )
+from utak.geometry.motion.first_contact import ContactBody, Obstacles
+from utak.geometry.motion.se2 import Translate
+from utak.kb.body import Move, Push, Turn
+from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST
+from utak.kb.localisation.hypotheses.remap import object_pose
+from utak.kb.localisation.hypotheses.what_if import Surprise
+from utak.kb.localisation.propose.frame import blocked_pushes_with_origin
+from utak.kb.localisation.propose.origin import COARSE_ORIGINS
+from utak.kb.objects.held_object import HeldObject
+from utak.kb.perception.frame import CENTRE, Frame
 
 Point = tuple[float, float]
 

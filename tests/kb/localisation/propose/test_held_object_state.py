@@ -8,6 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
+
 from utak.geometry.motion.first_contact import Obstacles
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome

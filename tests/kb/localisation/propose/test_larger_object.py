@@ -3,14 +3,14 @@
 import pytest
 import shapely
 from shapely.affinity import translate
+
+from tests.kb.eyes import Occupied, impression, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
 from utak.kb.body import Move, Push
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import FREE, OCCUPIED
 from utak.kb.objects.held_object import HeldObject
-
-from tests.kb.eyes import Occupied, impression, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
 
 HERE = (17, 12)  # table frame: (0, 0) of the map frame
 DOOR = ["b" + "." * 19 + "..." + "." * 17 + "b"] * 5

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
+from tests.kb.eyes import impression, random_room, world_of
+from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
@@ -18,9 +21,6 @@ from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionH
 from utak.kb.localisation.propose.origin import COARSE_ORIGINS, blocked_walks_with_origin
 from utak.kb.perception.frame import Frame, turned
 from utak.kb.perception.retina import count_ranges
-
-from tests.kb.eyes import impression, random_room, world_of
-from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 
 Point = tuple[float, float]
 

@@ -8,6 +8,10 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
+
+from tests.kb.drawings import LARGE_ROOM
+from tests.kb.eyes import impression, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
 from utak.kb.body import Turn
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, origin_grid
 from utak.kb.localisation.propose.origin_from_turns import TurnOriginCell
@@ -16,10 +20,6 @@ from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import OPEN
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.frame import CENTRE, Frame
-
-from tests.kb.drawings import LARGE_ROOM
-from tests.kb.eyes import impression, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 PLAIN = world_of(LARGE_ROOM)

@@ -6,15 +6,15 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely.affinity import translate
+
+from tests.kb.eyes import Occupied, impression, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
 from utak.geometry.raster.components import components
 from utak.kb.body import Move, Push
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import OCCUPIED
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.seams import halves
-
-from tests.kb.eyes import Occupied, impression, world_of
-from tests.kb.localisation.hypotheses.test_remap import around
 
 HERE = (17, 12)  # table frame: (0, 0) of the map frame
 ROOM = world_of(["b" * 40, *["b" + "." * 38 + "b"] * 24, "b" * 40])

@@ -10,14 +10,14 @@ from typing import Any
 
 import clingo
 import pytest
+
+import utak
+from benchmarks.harness.reasons import complaints
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import Episode, encode, read_episode
 from utak.simulator.episode.schema import accepts
 from utak.simulator.explaining.questions import questions_of_episode
 from utak.simulator.replay.transcript import transcript
-
-import utak
-from benchmarks.harness.reasons import complaints
 
 STEPS = 4  # commands of the recorded run: after the fourth one the block is aside
 WORLD = """\

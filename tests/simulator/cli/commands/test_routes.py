@@ -7,12 +7,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+
+from tests.tables import few
 from utak.geometry import Screen
 from utak.geometry.io.movingai import read_trips
 from utak.geometry.io.svg import draw, route_line_width
 from utak.simulator.cli.main import main
-
-from tests.tables import few
 
 MAP = "type octile\nheight 5\nwidth 8\nmap\n........\n.@@@@@@.\n....@...\n.@..@...\n.@......\n"
 TRIPS = """\

@@ -10,9 +10,9 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from utak.simulator.cli.main import main
 
 from benchmarks.episodes.killing import descendants_of, still_there
+from utak.simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[4]
 

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import EpisodeLog, read_episode
 from utak.simulator.episode.schema import complaints

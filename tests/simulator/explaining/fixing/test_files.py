@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.episode.episode import Episode
 from utak.simulator.episode.record import header

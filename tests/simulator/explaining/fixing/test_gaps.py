@@ -7,6 +7,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
+
 from utak.simulator.explaining.fixing.gaps import (
     WIDTH_STEP,
     GapSide,

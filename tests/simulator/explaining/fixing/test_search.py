@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import shapely
+
 from utak.kb.body import Body, Command, Grasp, Push
 from utak.kb.task.task import Task
 from utak.planner.cycle import StepReport, Verdict

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
 from utak.kb.language.diagnostics import CannotOpenError
 from utak.simulator.cli.main import main
 from utak.simulator.sweep.executors.cluster import run_on_dask

@@ -7,12 +7,12 @@ import time
 from pathlib import Path
 
 import pytest
+
+from benchmarks.episodes.killing import descendants_of, still_there
 from utak.simulator.sweep.executors.in_process import run_in_this_process
 from utak.simulator.sweep.executors.processes import run_in_processes
 from utak.simulator.sweep.executors.task_process import TaskProcess
 from utak.simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, WorkerTask, carry_out
-
-from benchmarks.episodes.killing import descendants_of, still_there
 
 SEGFAULT = WorkerTask("ctypes:string_at", 0)  # reads memory at address 0
 EXIT = WorkerTask("os:_exit", 3)

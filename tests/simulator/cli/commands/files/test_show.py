@@ -4,6 +4,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+
 from utak.simulator.cli.main import main
 from utak.simulator.scenario.picture import read_picture
 
