@@ -4,6 +4,8 @@ A module of tests that cannot be imported is an error: pytest would skip it wher
 
 Hypothesis tries the same examples each time, so that a test that passes goes on passing; HYPOTHESIS_PROFILE=random
 tries others. Neither fails because the machine does much besides.
+
+Processes that share the tests (pytest-xdist) find all kernels compiled; else each would compile the same ones.
 """
 
 import os
@@ -21,6 +23,15 @@ for name in ("same", "random"):
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 TESTS = Path(__file__).resolve().parent / "tests"
 NOT_IMPORTED = "unable to import module"  # pytest's reason; what lacks an optional library skips itself for another
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile all kernels that are not in the cache before pytest-xdist starts its processes."""
+    is_worker, is_shared = hasattr(config, "workerinput"), getattr(config.option, "numprocesses", None)
+    if is_shared and not is_worker and os.environ.get("NUMBA_DISABLE_JIT", "0") == "0":
+        from utak.simulator.run.warming import warm_all
+
+        warm_all()
 
 
 @pytest.hookimpl(wrapper=True)

@@ -27,7 +27,7 @@ from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial
 from benchmarks.worlds.makers import add_kinds, scenario, seeds
 from utak.simulator.run.session import Session
 from utak.simulator.sweep.executors.processes import run_in_processes
-from utak.simulator.sweep.results import ResultsProtocol, RowForm, open_results
+from utak.simulator.sweep.results import Results
 
 TrialRunner = Callable[..., CampaignTrial]
 
@@ -58,8 +58,7 @@ def main(arguments: Sequence[str] | None = None, runner: TrialRunner = run_trial
         else:
             numbers = seeds(given.seed, given.count, given.unable)
             worlds = _unclean(given.again) if given.again else list(product(given.task, numbers))
-            results = open_results(given.output, RowForm(None, ("task", "seed"), worlds))
-            stack.callback(results.finish)
+            results = stack.enter_context(closing(Results(given.output, ("task", "seed"), force=True)))
             trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs, runner), results, len(worlds)))
             trials.sort(key=lambda trial: worlds.index((trial.task, trial.seed)))
     print(table(trials), verdicts(trials), narrowness(trials), faults(trials), sep="\n", end="")
@@ -115,7 +114,7 @@ def _run_all(
             yield trial_of_outcome(*worlds[index], conditions, outcome)
 
 
-def _reported(trials: Iterable[CampaignTrial], results: ResultsProtocol, count: int) -> Iterator[CampaignTrial]:
+def _reported(trials: Iterable[CampaignTrial], results: Results, count: int) -> Iterator[CampaignTrial]:
     """Yield the trials as they come; report each on stderr and add it to the results."""
     for number, trial in enumerate(trials, 1):
         results.append(trial.row())

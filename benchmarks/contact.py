@@ -92,7 +92,6 @@ def speed(count: int, pieces: int) -> None:
     vectors, degrees = rng.uniform(-8, 8, (count, 2)), rng.uniform(-180, 180, count)
     prepared, mover = Obstacles(obstacles), ContactBody(body)
     prepared.pushes(mover, vectors[:2])
-    prepared.turns(mover, degrees[:2], vectors[:2])
     solid = shapely.union_all(obstacles)
     shapely.prepare(solid)
     few = max(count // 40, 20)
@@ -102,7 +101,6 @@ def speed(count: int, pieces: int) -> None:
     ]
     rows = [
         ("push", rate(lambda: prepared.pushes(mover, vectors), count)),
-        ("turn", rate(lambda: prepared.turns(mover, degrees, vectors), count)),
         ("push, one call each", rate(lambda: [prepared.first_contact(mover, m) for m in pushes], few)),
         ("turn, one call each", rate(lambda: [prepared.first_contact(mover, m) for m in turns], few)),
         ("push, shapely sweep", rate(lambda: [swept(body, solid, m) for m in pushes], few)),
@@ -130,7 +128,7 @@ def disagreements(count: int) -> int:
         prepared = Obstacles(still)
         for _ in range(5):
             motion = _motion(rng)
-            fraction = prepared.first_contact(ContactBody(body), motion).fraction
+            fraction = prepared.first_contact(ContactBody(body), motion)
             bad += _disagrees(body, still, motion, fraction)
             body = motion.part(fraction).carry(body)
             done += 1

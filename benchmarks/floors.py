@@ -1,6 +1,6 @@
 """Routes on random small floors, compared with exact answers.
 
-    python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,bodies,avoid,images,chains]
+    python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,images,chains]
 
 Every floor goes through every check once, with a random start and goal. What differs from brute force
 (benchmarks/engine/exact.py) is printed with the floor's number. The exit code is 1 when anything differs.
@@ -14,17 +14,14 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
-from benchmarks.engine.exact import Exact, clearances, labels
+from benchmarks.engine.exact import Exact
 from utak.geometry import Route, Screen
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.pathfinders.visibility_graph import visibility_path
 
-HALF_DIAGONAL = 0.7075  # squares: of a square, and what the polygons that stand for circles lack (derived)
 PATH_TOLERANCE = 1e-9  # squares by which lengths may differ because of rounding (a convention)
-BODY_RADII = [0.3, 0.5, 0.55, 0.6, 0.7071, 0.75, 1.0, 1.2, 1.5, 1.55, 1.5811, 2.0, 2.52, 2.5495, 3.0]
 
 
 def random_floor(rng: np.random.Generator) -> Bools:
@@ -125,9 +122,6 @@ def words(case: Case) -> Iterator[str]:
     for route in routes:
         if case.screen.tighten(route).signature != route.signature:
             yield "a route that is tightened has another signature"
-        (named,) = case.screen.routes(case.start, case.goal, word=route.signature)
-        if abs(named.length - route.length) > PATH_TOLERANCE or abs(named.clearance - route.clearance) > PATH_TOLERANCE:
-            yield f"the route of a signature is {named.length} long, clearance {named.clearance}, not as the route"
     signatures = [route.signature for route in routes]
     walk = case.walk()
     if walk is not None:
@@ -179,83 +173,11 @@ def faults(case: Case, route: Route, start: XY, goal: XY) -> Iterator[str]:
         yield f"a route's clearance is {route.clearance}"
 
 
-def bodies(case: Case) -> Iterator[str]:
-    """Yield faults of routes of a body: it must keep its radius from walls, and have the topology of its free space.
-
-    Where a disc larger by half the diagonal of a square can go, there must be a route.
-    """
-    radius = float(case.rng.choice(BODY_RADII))
-    room = clearances(case.free) >= radius - 1e-12
-    graph, number = case.screen.pathgraph_for(radius), labels(room, corners=False)
-    parts = number_of_parts(graph)
-    cycles = graph.number_of_edges() - graph.number_of_nodes() + parts
-    holes = int(labels(np.pad(~room, 1, constant_values=True), corners=True).max()) - 1
-    if (parts, cycles) != (int(number.max()), holes):
-        yield f"radius {radius}: {parts} components and {cycles} cycles, not {number.max()} and {holes}"
-    walls = shapely.union_all([shapely.box(j, i, j + 1, i + 1) for i, j in np.argwhere(~case.exact.padded) - 1])
-    start, goal = ((float(int(p[0])) + 0.5, float(int(p[1])) + 0.5) for p in (case.start, case.goal))
-    a, b = (int(number[int(p[1]), int(p[0])]) for p in (start, goal))
-    for k in (1, 3):
-        routes = case.screen.routes(start, goal, k=k, radius=radius)
-        if bool(routes) != (a == b > 0):
-            yield f"radius {radius}: {len(routes)} routes between parts {a} and {b}"
-    if len({route.signature for route in routes}) < len(routes):
-        yield f"radius {radius}: two routes are of one class"
-    ample = shapely.box(0, 0, *case.free.shape[::-1]).difference(walls.buffer(radius + HALF_DIAGONAL, quad_segs=64))
-    for part in shapely.get_parts(ample):
-        if part.covers(shapely.Point(start)) and part.covers(shapely.Point(goal)) and not routes:
-            yield f"radius {radius}: no routes where there is room for a disc of {radius + HALF_DIAGONAL}"
-    off_centre = case.screen.routes(case.start, case.goal, k=2, radius=radius)
-    if off_centre and not routes:
-        yield f"radius {radius}: routes only from points off the centres"
-    for route in [*routes, *off_centre]:
-        line = shapely.LineString(route.points) if len(route.points) > 1 else shapely.Point(route.points[0])
-        if line.distance(walls) < radius - PATH_TOLERANCE or not radius - PATH_TOLERANCE <= route.clearance < np.inf:
-            yield f"radius {radius}: a route comes as near as {line.distance(walls)}, clearance {route.clearance}"
-        if abs(route.length - line.length) > PATH_TOLERANCE:
-            yield f"radius {radius}: a route's length is not that of its points"
-    for point in (case.start, start):
-        for route in case.screen.routes(point, point, k=1, radius=radius):
-            if route.length != 0.0:
-                yield f"radius {radius}: {route.length} from a point to itself"
-
-
-def number_of_parts(graph: object) -> int:
-    """Return the number of connected components of a pathgraph."""
-    import networkx
-
-    return int(networkx.number_connected_components(graph))
-
-
-def avoid(case: Case) -> Iterator[str]:
-    """Yield faults of routes that avoid passages: they must exist exactly within the parts cut by these."""
-    passages = case.screen.passages()
-    if not passages:
-        return
-    cuts = [[passages[int(case.rng.integers(len(passages)))]] for _ in range(3)]
-    cuts.append([passages[k] for k in np.flatnonzero(case.rng.random(len(passages)) < 0.4).tolist()])
-    squares = np.argwhere(case.free).tolist()
-    for chosen in cuts:
-        part = case.screen.parts(chosen)
-        for _ in range(4):
-            (i, j), (m, n) = (squares[int(k)] for k in case.rng.integers(0, len(squares), 2))
-            for k in (1, 3):
-                start, goal = (j + 0.5, i + 0.5), (n + 0.5, m + 0.5)
-                routes = case.screen.routes(start, goal, k=k, avoid=chosen)
-                if bool(routes) != (part[i, j] == part[m, n]):
-                    yield f"k = {k}: {len(routes)} routes between parts {part[i, j]} and {part[m, n]}"
-                for route in routes:
-                    yield from faults(case, route, start, goal)
-                if len({route.signature for route in routes}) < len(routes):
-                    yield "two routes are of one class"
-
-
 def images(case: Case) -> Iterator[str]:
     """Yield answers that differ between a floor and its mirror image or its quarter turn."""
     rows, columns = case.free.shape
     squares = np.argwhere(case.free)
     (i, j), (m, n) = (squares[int(k)].tolist() for k in case.rng.integers(0, len(squares), 2))
-    radius = float(case.rng.choice([0.0, 0.6, 1.2]))
 
     def mirrored(x: float, y: float) -> XY:
         return columns - x, y
@@ -264,21 +186,19 @@ def images(case: Case) -> Iterator[str]:
         return rows - y, x
 
     start, end = (j + 0.5, i + 0.5), (n + 0.5, m + 0.5)
-    expected = answers(case.screen, start, end, radius)
+    expected = answers(case.screen, start, end)
     for image, place in ((np.fliplr, mirrored), (lambda a: np.fliplr(a.T), turned)):
-        again = answers(Screen(image(case.free)), place(*start), place(*end), radius)
+        again = answers(Screen(image(case.free)), place(*start), place(*end))
         if not np.allclose(expected, again, rtol=0, atol=PATH_TOLERANCE):
             yield f"{expected} on the floor and {again} on its image"
 
 
-def answers(screen: Screen, start: XY, end: XY, radius: float) -> list[float]:
+def answers(screen: Screen, start: XY, end: XY) -> list[float]:
     """Return what no symmetry changes: the shortest length, number of routes, cycles."""
     first = screen.routes(start, end, k=3)
-    body = screen.routes(start, end, k=1, radius=radius)
-    graph = screen.pathgraph_for(radius)
+    graph = screen.pathgraph
     return [
         first[0].length if first else -1.0,
-        float(len(body)),
         float(graph.number_of_edges() - graph.number_of_nodes()),
     ]
 
@@ -302,7 +222,7 @@ def chains(case: Case) -> Iterator[str]:
 
 
 CHECKS: dict[str, Callable[[Case], Iterator[str]]] = {
-    check.__name__: check for check in (words, shortest, bodies, avoid, images, chains)
+    check.__name__: check for check in (words, shortest, images, chains)
 }
 
 

@@ -54,7 +54,7 @@ def faults(scene: MovingScene, plan: MotionPlan, samples: int = 512) -> int:
     obstacles, body, bad = Obstacles(scene.obstacles), scene.start.place(scene.body), 0
     for motion in plan.motions:
         swept = [motion.part(t).carry(body) for t in np.linspace(0, 1, samples)]
-        free = obstacles.first_contact(ContactBody(body), motion).fraction == 1.0
+        free = obstacles.first_contact(ContactBody(body), motion) == 1.0
         bad += bool(shapely.intersects(solid, swept).any()) or not free
         body = motion.carry(body)
     return bad + 1000 * int(body.symmetric_difference(scene.goal.place(scene.body)).area > 1e-6)

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine import peers
+from benchmarks.engine.movingai import Trip, read_map, read_trips
 from benchmarks.engine.sightlines import Sightlines
 from utak.geometry import Screen
-from utak.geometry.io.movingai import Trip, read_map, read_trips
 
 MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
 TIMED_ROUNDS = 6  # in which calls that are compared have their turns (a convention)
@@ -54,11 +54,11 @@ def trips_of(path: Path, free: np.ndarray, count: int) -> list[Trip]:
     return [Trip((b + 0.5, a + 0.5), (d + 0.5, c + 0.5), 1.0) for (a, b), (c, d) in ends.tolist()]
 
 
-def topology(screen: Screen, radius: float) -> tuple[int, int]:
-    """Return the numbers of components and of independent cycles of the pathgraph for a radius (squares)."""
+def topology(screen: Screen) -> tuple[int, int]:
+    """Return the numbers of components and of independent cycles of the pathgraph."""
     import networkx as nx
 
-    graph = screen.pathgraph_for(radius)
+    graph = screen.pathgraph
     components = nx.number_connected_components(graph)
     return components, graph.number_of_edges() - graph.number_of_nodes() + components
 
@@ -90,13 +90,13 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
     )
     ratios, most = [], 0.0
     for path, free in maps.items():
-        screen, times = Screen(free), paired_times(free)
-        peak, right = peak_bytes(free), [right_topology(screen, radius) for radius in range(6)]
+        times = paired_times(free)
+        peak, right = peak_bytes(free), right_topology(free)
         most = max(most, peak)
         ratio = times[-1] / times[:-1]
         if np.isfinite(times[-1]):
             ratios.append((free.size >= LARGE_MAP, ratio))
-        size, verdict = f"{free.shape[0]}x{free.shape[1]}", "right" if all(right) else f"wrong {right}"
+        size, verdict = f"{free.shape[0]}x{free.shape[1]}", "right" if right else "wrong"
         print(
             f"{path.stem:32} {size:>10} {times[0]:8.2f} {times[1]:8.2f} {times[2]:9.2f} {times[3]:9.1f} | {'':14} "
             f"{ratio[0]:6.1f} {ratio[1]:9.1f} {ratio[2]:11.1f} | {fresh_ratio(free):6.2f} {peak:6.1f}  {verdict}",
@@ -110,7 +110,7 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
                 f"{name}: median over maps of 512^2 and more {medians[k]:.1f} times as fast as the peer "
                 f"({median} wanted), least of all maps {lowest[k]:.1f} ({least_of_all} wanted)"
             )
-    print(f"topology for radii 0 to 5; most bytes a cell {most:.1f} (11 wanted); where sknw kills its process: nan")
+    print(f"most bytes a cell {most:.1f} (11 wanted); where sknw kills its process: nan")
 
 
 def paired_times(free: np.ndarray) -> np.ndarray:
@@ -150,9 +150,9 @@ def peak_bytes(free: np.ndarray) -> float:
     return peak
 
 
-def right_topology(screen: Screen, radius: float) -> bool:
-    """Return whether the pathgraph for a radius (squares) has the components and holes of the body's free space."""
-    return topology(screen, radius) == peers.components_and_holes(screen.free & (screen.clearance >= radius))
+def right_topology(free: np.ndarray) -> bool:
+    """Return whether the pathgraph has the components and holes of free space."""
+    return topology(Screen(free)) == peers.components_and_holes(free)
 
 
 def growth(maps: dict[Path, np.ndarray], _: int) -> None:

@@ -33,7 +33,7 @@ GEOMETRY = {
     "utak.geometry.manipulation.plan_carrying": ["plan_carrying", "CarryingPlan"],
     "utak.geometry.raster.rasterize": ["squares"],
     "utak.geometry.shapes.fit": ["fit_shapes", "Fit"],
-    "utak.geometry.io.movingai": ["parse_map", "read_map", "read_trips"],
+    "utak.geometry.io.movingai": ["parse_map"],
 }
 # What a program that uses Utak from Python calls, in reading order.
 PYTHON = {
@@ -44,9 +44,8 @@ PYTHON = {
     "utak.explaining": ["ReasonTree"],
     "utak.mind": ["Mind", "Verdict"],
     "utak.kb.body": ["Impression", "Move", "Push", "Turn", "Grasp", "Release"],
-    "utak.errors": ["RunNotRepeatedError"],
+    "utak.simulator.run.session": ["RunNotRepeatedError"],
     "utak.gym.environment": ["TabletopEnv"],
-    "utak.gym.vector": ["TabletopVectorEnv"],
 }
 
 

@@ -1,7 +1,7 @@
-"""A screen: a grid of free and blocked squares, and what a point or a round body can do on it.
+"""A screen: a grid of free and blocked squares, and what a point can do on it.
 
 Building a screen measures all clearances and finds the skeleton and its graph. Everything else is computed when it is
-first asked for, and kept: chains with their squares, and one layer of routing data for each radius.
+first asked for, and kept: chains with their squares, and the layer of routing data.
 """
 
 from collections.abc import Iterable, Sequence
@@ -19,16 +19,14 @@ from utak.geometry.passages.necks import DOOR_RATIO, Passage, find_passages
 from utak.geometry.passages.partition import find_parts
 from utak.geometry.passages.walls import Walls, find_walls
 from utak.geometry.raster.distance_transform import smallest_distance_type
-from utak.geometry.routes.layer import Layer, build_layer, find_pathgraph, least_squared_clearance, new_state
+from utak.geometry.routes.layer import build_layer
 from utak.geometry.routes.queries import LayerQueries
 from utak.geometry.routes.route import Route
-from utak.geometry.routes.tighten import word_of_crossings
 from utak.geometry.skeleton.buffers import Tenant, take_buffers
-from utak.geometry.skeleton.chains import Chains, find_chains
-from utak.geometry.skeleton.graph import SkeletonGraph, contract
+from utak.geometry.skeleton.chains import find_chains
+from utak.geometry.skeleton.graph import contract
 from utak.geometry.skeleton.pathgraph_arrays import PathgraphArrays, build_pathgraph_arrays
-from utak.geometry.skeleton.skeleton import States, Words
-from utak.geometry.skeleton.sweep import survey
+from utak.geometry.skeleton.sweep import new_state, survey
 
 if TYPE_CHECKING:
     import networkx
@@ -75,11 +73,12 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
-        self._rent(smallest_distance_type(grid))
-        self._skeletons: dict[int, tuple[States, Words, SkeletonGraph]] = {1: self._survey(grid)}
-        self._chains: dict[int, Chains] = {}
-        self._layers: dict[tuple[int, bool], Layer] = {}
-        self._questions: dict[float, LayerQueries] = {}
+        self._tenant = Tenant()
+        padded = rows + 2, columns + 2
+        self._square, memory = take_buffers(self._tenant, padded, smallest_distance_type(grid))
+        state, words = new_state(padded, memory)
+        survey(grid, self._square, state, words)
+        self._bones = state, words, contract(self._square, state, words)
 
     @property
     def free(self) -> Bools:
@@ -110,7 +109,7 @@ class Screen:
         """
         from utak.geometry.skeleton.thinning import thin_skeleton
 
-        return thin_skeleton(self._square, self._skeleton_at(1)[0])
+        return thin_skeleton(self._square, self._bones[0])
 
     @cached_property
     def pathgraph(self) -> "networkx.MultiGraph[int]":
@@ -131,91 +130,30 @@ class Screen:
         >>> graph.nodes[0], graph.number_of_edges(), graph.edges[0, 0, 0]["length"]
         ({'x': 0.5, 'y': 0.5, 'clearance': 0.5}, 1, 8.0)
         """
-        return self.pathgraph_for(0.0)
-
-    def pathgraph_for(self, radius: float) -> "networkx.MultiGraph[int]":
-        """Return the pathgraph of a round body.
-
-        Parameters
-        ----------
-        radius : float
-            Radius of the body, in squares.
-
-        Returns
-        -------
-        networkx.MultiGraph
-            As ``pathgraph`` (nodes with ``x``, ``y``, ``clearance``, edges with ``length``, ``clearance``, ``points``,
-            all in squares), of the squares whose clearance is at least the radius; empty when there are none. A new
-            graph at each call.
-
-        Raises
-        ------
-        ValueError
-            When the radius is negative or no finite number.
-        """
         from utak.geometry.skeleton.networkx_export import networkx_graph
 
-        return networkx_graph(self._new_arrays(radius))
+        return networkx_graph(self._new_arrays())
 
     @cached_property
     def pathgraph_arrays(self) -> PathgraphArrays:
-        """The pathgraph of a point as arrays: the network of lines midway between the walls.
+        """The pathgraph as arrays: the network of lines midway between the walls.
 
         Nodes are its n junctions and ends, edges the m chains of squares between them, which have p squares in all. The
         arrays are ``nodes`` (n, 2) and ``node_clearances`` (n,), ``edges`` (m, 2), the nodes at both ends, ``lengths``
         and ``edge_clearances`` (m,), ``points`` (p, 2), edge by edge, of which those of edge e are ``offsets[e]`` to
-        ``offsets[e + 1]``, ``narrowest`` (m,), a row of ``points``, and ``adjacency_offsets``, ``incident_edges`` and
-        ``neighbours``, which list the edges at each node. Read-only; places (x, y), lengths and clearances in squares,
-        in the frame of the screen: x to the east, y to the north, (0, 0) at the south-west corner. Made when first
-        asked for, and kept.
+        ``offsets[e + 1]``. Read-only; places (x, y), lengths and clearances in squares, in the frame of the screen: x
+        to the east, y to the north, (0, 0) at the south-west corner. Made when first asked for, and kept.
         """
-        return self.pathgraph_arrays_for(0.0)
-
-    def pathgraph_arrays_for(self, radius: float) -> PathgraphArrays:
-        """Return the pathgraph of a round body as arrays.
-
-        Nodes are the junctions and ends of the skeleton (places and clearances), edges the chains of squares between
-        them (end nodes, lengths, least clearances, points); further arrays tell which edges meet at each node.
-
-        Parameters
-        ----------
-        radius : float
-            Radius of the body, in squares.
-
-        Returns
-        -------
-        PathgraphArrays
-            Of the squares whose clearance is at least the radius: new, read-only arrays, of no rows when there is no
-            such square. Coordinates (x, y) are from the screen's south-west corner, y to the north. Coordinates,
-            lengths and clearances are in squares; the radius is not taken off the clearances. The points of edge e are
-            ``points[offsets[e]:offsets[e + 1]]``, the edges at node v
-            ``incident_edges[adjacency_offsets[v]:adjacency_offsets[v + 1]]``; see `PathgraphArrays`.
-
-        Raises
-        ------
-        ValueError
-            When the radius is negative or no finite number.
-        """
-        arrays = self._new_arrays(radius)
+        arrays = self._new_arrays()
         for array in arrays:
             array.flags.writeable = False
         return arrays
 
-    def _new_arrays(self, radius: float) -> PathgraphArrays:
-        """Return the pathgraph of a body of that radius (squares; 0 for a point) in new, writable arrays."""
-        # Raises ValueError when the radius is negative or no finite number.
-        state, _, bones = self._skeleton_at(least_squared_clearance(radius))
-        return build_pathgraph_arrays(self._square, state, bones)
+    def _new_arrays(self) -> PathgraphArrays:
+        """Return the pathgraph in new, writable arrays."""
+        return build_pathgraph_arrays(self._square, self._bones[0], self._bones[2])
 
-    def routes(
-        self,
-        start: Point,
-        goal: Point,
-        k: int = 3,
-        radius: float = 0.0,
-        avoid: Iterable[Passage] = (),
-        word: Sequence[int] | None = None,
-    ) -> list[Route]:
+    def routes(self, start: Point, goal: Point, k: int = 3) -> list[Route]:
         """Return topologically distinct routes, each the shortest of its class, the shortest first.
 
         Two routes are of one class when one can be deformed into the other over free space with its ends fixed.
@@ -227,16 +165,6 @@ class Screen:
         k : int
             How many routes at most. Their paths over the pathgraph pass no junction twice. Only the shortest of all,
             which for ``k`` of 2 or more comes first, may be of another class.
-        radius : float
-            Radius of a round body about the point, in squares. It moves from centre to centre of squares whose
-            clearance is at least the radius, and straight between start or goal and the centre of its square. There
-            is no route when start or goal have no room for that.
-        avoid : iterable of Passage
-            Passages through which routes must not lead: there are routes exactly between squares of one part of
-            ``parts(avoid)``.
-        word : sequence of int, optional
-            A signature: the signed crossing numbers of a route of this screen and radius, in order (see ``Route``).
-            Only the route of this class is returned, however it winds; ``k`` and ``avoid`` do not count.
 
         Returns
         -------
@@ -248,8 +176,7 @@ class Screen:
         Raises
         ------
         ValueError
-            When a point lies outside the screen or in a blocked square, when the word is not one of this screen, ``k``
-            no positive whole number, or the radius negative or not finite.
+            When a point lies outside the screen or in a blocked square, or ``k`` is no positive whole number.
 
         Examples
         --------
@@ -259,18 +186,9 @@ class Screen:
         >>> screen = Screen(free)
         >>> [round(route.length, 3) for route in screen.routes((0.5, 2.5), (6.5, 2.5), k=2)]
         [6.099, 6.099]
-        >>> screen.routes((1.5, 2.5), (5.5, 2.5), k=1, radius=1.0)
-        []
         """
         check_count(k)
-        questions = self._ask(radius)
-        begin, end = self._checked(start, "start"), self._checked(goal, "goal")
-        if not (questions.admits(begin) and questions.admits(end)):
-            return []
-        if word is None:
-            return questions.to_point(begin, end, k, tuple(avoid))
-        symbols = word_of_crossings(questions.layer.runs, (*begin, *end), word)
-        return [] if symbols is None else [questions.of_word(begin, end, symbols)]
+        return self._queries.to_point(self._checked(start, "start"), self._checked(goal, "goal"), k)
 
     def shortest(self, start: Point, goal: Point) -> Route | None:
         """Return the shortest route of all for a point, at any angle.
@@ -295,37 +213,31 @@ class Screen:
             When a point lies outside the screen or in a blocked square.
         """
         begin, end = self._checked(start, "start"), self._checked(goal, "goal")
-        return self._ask(0.0).shortest(begin, end)
+        return self._queries.shortest(begin, end)
 
-    def tighten(self, route: Route, radius: float = 0.0) -> Route:
+    def tighten(self, route: Route) -> Route:
         """Return the shortest route of the same class (all that can be deformed into it), between the same ends.
 
         Parameters
         ----------
         route : Route
             Any polyline over free space; only its ``points`` count, (x, y) in squares in the frame of this screen.
-        radius : float
-            Radius of a round body, in squares: it moves from centre to centre of squares whose
-            clearance is at least the radius. 0 for a point.
 
         Returns
         -------
         Route
             New: ``points``, corners (x, y) in squares in the frame of this screen, ``length`` and ``clearance`` in
-            squares (the radius is not taken off the clearance), ``signature`` (tuple of int that names the class:
-            portals crossed from start to goal, negative southwards) and ``chains`` (tuple of int: numbers of the
-            pathgraph's edges, in order).
+            squares, ``signature`` (tuple of int that names the class: portals crossed from start to goal, negative
+            southwards) and ``chains`` (tuple of int: numbers of the pathgraph's edges, in order).
 
         Raises
         ------
         ValueError
-            When the route leaves free space (of a body: the squares whose clearance is at least the radius), or the
-            radius is negative or not finite.
+            When the route leaves free space.
         """
-        questions = self._ask(radius)
-        word = word_of_line(questions.layer.runs, route.points.tolist())
+        word = word_of_line(self._queries.layer.strips, route.points.tolist())
         start, goal = (self._checked(route.points[k].tolist(), "the route's end") for k in (0, -1))
-        return questions.of_word(start, goal, word)
+        return self._queries.of_word(start, goal, word)
 
     def passages(self, pinch: float = DOOR_RATIO) -> list[Passage]:
         """Return the necks of free space, ordered by place: by row from the south, then by column from the west.
@@ -402,45 +314,11 @@ class Screen:
             raise ValueError(f"{name} ({x}, {y}) lies in a blocked square")
         return x, y
 
-    def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
-        """Take memory for squared clearances of that type of integers, and for the states of the skeleton."""
-        self._tenant = Tenant()
-        self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
-
-    def _survey(self, grid: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """Measure all clearances of free squares; return the skeleton (twice: by cells, by words) and its graph."""
-        state, words = new_state(self._square.shape, self._words)
-        survey(grid, self._square, state, words)
-        return state, words, contract(self._square, state, words)
-
-    def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
-        """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them."""
-        found = self._skeletons.get(level)
-        if found is None:
-            state, words = new_state(self._square.shape)
-            found = state, words, find_pathgraph(self._square, level, state, words)
-            self._skeletons[level] = found
-        return found
-
-    def _chains_at(self, level: int) -> Chains:
-        """Return the graph of that level with the cells of its chains (flat indices, padded); keep it."""
-        found = self._chains.get(level)
-        if found is None:
-            state, _, bones = self._skeleton_at(level)
-            found = self._chains[level] = find_chains(bones, state)
-        return found
-
-    def _ask(self, radius: float) -> LayerQueries:
-        """Return the object that answers questions for a body of that radius (squares; 0 for a point); keep it."""
-        # Raises ValueError when the radius is negative or no finite number.
-        found = self._questions.get(radius)
-        if found is None:
-            key = least_squared_clearance(radius), radius > 0.0
-            if key not in self._layers:
-                state, chains = self._skeleton_at(key[0])[0], self._chains_at(key[0])
-                self._layers[key] = build_layer(self._square, key[0], key[1], state, chains)
-            found = self._questions[radius] = LayerQueries(self._layers[key], key[0], radius)
-        return found
+    @cached_property
+    def _queries(self) -> LayerQueries:
+        """The object that answers questions about routes, with all that it reads."""
+        state, _, bones = self._bones
+        return LayerQueries(build_layer(self._square, state, find_chains(bones, state)))
 
 
 def checked_grid(free: ArrayLike) -> Bools:

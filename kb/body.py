@@ -81,6 +81,7 @@ class Release:
 
 
 Command = Move | Grasp | Push | Turn | Release
+COMMANDS = (Move, Push, Turn, Grasp, Release)  # each is named as what carries it out: `Tabletop.move`, ...
 
 
 @dataclass(frozen=True, slots=True)

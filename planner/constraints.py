@@ -43,7 +43,7 @@ def in_view_frame(region: Any, frame: Frame, west: float, south: float) -> Any:
     """Return a region (shapely geometry, in squares) of the robot's own frame in the view frame."""
 
     def convert(points: Any) -> Any:
-        x, y = frame.places_from_utak(points[:, 0], points[:, 1])
+        x, y = frame.place_from_utak(points[:, 0], points[:, 1])
         return np.column_stack([x - west, y - south])
 
     return shapely.transform(region, convert)

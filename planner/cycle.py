@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from utak.kb.body import Body, Command, Impression, Release
 from utak.kb.knowledge import Knowledge
@@ -17,7 +17,7 @@ from utak.kb.task.task import Task
 from utak.kb.tracing.decisions import SolverCall, record_applied_rules, record_decisions
 from utak.kb.world.facts import Places, belief
 from utak.planner.agenda.decider import Decider
-from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.decision import Decision, StepReport, TaskVerdict, Verdict
 from utak.planner.journal import Journal
 
 
@@ -29,23 +29,6 @@ class Options:
     kb_files: tuple[str, ...] = ()  # paths of the user's own encodings; none by default
     max_steps: int = 200  # the number of commands after which the robot gives up
     pull: bool = True  # whether a held object may be pulled; False when it may only be pushed
-
-
-class StepReport(NamedTuple):
-    """One turn of the cycle."""
-
-    command: Command | None  # the command that was given; None on waking
-    impression: Impression  # what the body returned after it
-    belief: dict[str, Any]  # what is believed since, ready for JSON, as `utak.kb.world.facts.belief` returns it.
-    why: str  # the reason of the command, in words
-
-
-class Verdict(NamedTuple):
-    """The end of the task, as the robot judges it."""
-
-    believed: bool  # whether the robot believes that the task is done
-    verdict: TaskVerdict  # the kind of the end
-    reason: str  # why, in words
 
 
 class _Before(NamedTuple):
@@ -189,7 +172,7 @@ class Robot:
         """Return the report of one turn; `decisions` are the answers of encodings since the step before."""
         places = Places(self.decider.rooms, self.decider.corners)
         task = self.decider.task
-        objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
+        objects = (name for name in task.parameters if task.is_object(name) or name in task.described)
         planned = self._planned_facts()
         believed = belief(self.model, places, accommodated, self.decider.bound, objects, planned)
         believed |= self._journal.entry(decisions, self.knowledge.memory)

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any, NamedTuple
 
-from utak.kb.body import Command
+from utak.kb.body import Command, Impression
 
 
 class TaskVerdict(StrEnum):
@@ -13,6 +14,23 @@ class TaskVerdict(StrEnum):
     IMPOSSIBLE = "impossible"  # no plan exists, whatever is still unknown
     POSSIBLE_IF = "possible_if"  # no plan is left, but a named open fact would allow one
     LIMIT = "limit"  # the robot gave up, and nothing is proved
+
+
+class StepReport(NamedTuple):
+    """One turn of the cycle."""
+
+    command: Command | None  # the command that was given; None on waking
+    impression: Impression  # what the body returned after it
+    belief: dict[str, Any]  # what is believed since, ready for JSON, as `utak.kb.world.facts.belief` returns it.
+    why: str  # the reason of the command, in words
+
+
+class Verdict(NamedTuple):
+    """The end of the task, as the robot judges it."""
+
+    believed: bool  # whether the robot believes that the task is done
+    verdict: TaskVerdict  # the kind of the end
+    reason: str  # why, in words
 
 
 @dataclass(frozen=True)

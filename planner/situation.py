@@ -11,15 +11,24 @@ import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.raster.rasterize import squares
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT
 from utak.kb.mapping.patch import Patch
+from utak.kb.task.described import IN_WORDS
 from utak.kb.task.task import Task
 from utak.kb.world.corners import Corner
 from utak.kb.world.facts import Places, facts_for_rules
 from utak.kb.world.model import Node, WorldModel
-from utak.kb.world.place_names import SAME_DOOR
-from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
+from utak.kb.world.rooms import (
+    MIN_DOOR_CONFIDENCE,
+    MIN_TRIED_DOOR_CONFIDENCE,
+    NO_ROOM,
+    SAME_DOOR,
+    Door,
+    Rooms,
+    rooms_of,
+    went_through,
+)
 from utak.planner.constraints import (
     CARRY_NOTHING_THROUGH,
     MAX_KEPT_SPREAD,
@@ -45,8 +54,7 @@ def possible_doors(model: WorldModel, rooms: Rooms, rules: tuple[Path, ...]) -> 
     if (verge == model.verge).all():
         return ()
     others = rooms_of(model, rules, verge).doors
-    new = (one for one in others if all(math.dist(one.place, door.place) > SAME_DOOR for door in rooms.doors))
-    return tuple(replace(door, name=f"possible_{door.name}") for door in new)
+    return tuple(one for one in others if all(math.dist(one.place, door.place) > SAME_DOOR for door in rooms.doors))
 
 
 def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0) -> Bools:
@@ -77,15 +85,19 @@ class Situation:
     track: tuple[XY, ...] = ()
     # By object: where its middle has been since it was first moved, as `track`
     carried: Mapping[str, tuple[XY, ...]] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)  # the next name of things that were moved, by that before
     closed: frozenset[str] = frozenset()  # the names of doors that users' rules close to the robot
     # By the name of a door: the commands that users' rules add to a pass through it
     door_prices: Mapping[str, int] = field(default_factory=dict)
+    door_reliefs: Mapping[str, int] = field(default_factory=dict)  # how many fewer these are, as a door may be wider
     # Doors that there are if things that were seen and never felt are pieces of wall. They count where a constraint or
     # a rule is about doors: to go through one cannot be undone.
     possible_doors: tuple[Door, ...] = ()
     # Whether regions that the task forbids count only where a whole square lies within them, and for those alone whom
     # they are forbidden to. Then what is not possible is proved not to be, and what is possible may not be.
     lenient: bool = False
+    # Parameters that mean nothing, with what is as claimed of them in all but a property, and that property
+    near_misses: tuple[tuple[str, str, str], ...] = ()
     # By parameter of the task: other nodes that match it as well as the one that it is bound to
     as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -112,7 +124,9 @@ class Situation:
     def nothing_is(self, parameter: str) -> str:
         """Return in words that nothing is known to be what a parameter means: so far, or since the map is a new one."""
         since = "since the map was begun anew" if self.model.anew else "so far"
-        return f"nothing seen {since} is {parameter}"
+        missed = sorted((name, IN_WORDS.get(what, what)) for x, name, what in self.near_misses if x == parameter)
+        nothing = f"nothing seen {since} is {parameter}"
+        return "; ".join([nothing, *(f"{name} is not: its {what} is not as claimed" for name, what in missed)])
 
     def named_by(self, goals: Iterable[Fact]) -> frozenset[str]:
         """Return the names of the objects of which some goals speak, and "" where a term means none that is known."""
@@ -122,18 +136,18 @@ class Situation:
         """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way."""
         return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch), self.cost_maps.kept_off))
 
-    def next_rooms(self, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
-        """Compute the squares of the rooms next to the room of a point, and what to look at before relying on them."""
-        mask = self.next_to(place, self.rooms, MIN_DOOR_CONFIDENCE)
-        both = mask & self.next_to(place, self.rooms_by_sure_walls, MIN_TRIED_DOOR_CONFIDENCE)
+    def rooms_beyond(self, goal: Fact, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
+        """Compute the squares of the rooms where a goal about rooms holds, and what to look at before it is claimed."""
+        mask = self.goal_rooms(goal, place, self.rooms, MIN_DOOR_CONFIDENCE)
+        both = mask & self.goal_rooms(goal, place, self.rooms_by_sure_walls, MIN_TRIED_DOOR_CONFIDENCE)
         if both.any() or not mask.any():
             return both, ()
         return mask, doubtful_wall_ends(self)
 
-    def likely_next_rooms(self, place: XY) -> tuple[Rooms, Bools]:
-        """Compute the squares of the rooms that likely share a door with the room of a point."""
+    def likely_rooms_beyond(self, goal: Fact, place: XY) -> tuple[Rooms, Bools]:
+        """Compute the squares of the rooms where a goal about rooms likely holds."""
         for rooms in (self.rooms, self.rooms_by_sure_walls):
-            mask = self.next_to(place, rooms, MIN_TRIED_DOOR_CONFIDENCE)
+            mask = self.goal_rooms(goal, place, rooms, MIN_TRIED_DOOR_CONFIDENCE)
             if mask.any():
                 break
         return rooms, mask
@@ -165,9 +179,10 @@ class Situation:
         return kept or bool(self.closed or self.door_prices)
 
     def avoided(self, fact: Fact) -> tuple[Door, ...]:
-        """Return the sure doors through which none went whom a constraint keeps from a door, in order."""
-        actors = dict(self.kept_from_doors)[fact] or tuple(self.carried)
-        return tuple(door for door in self.rooms.sure if not any(self._passed(actor, door) for actor in actors))
+        """Return the doors that a constraint may mean and through which none went whom it keeps from one, in order."""
+        actors, meant = dict(self.kept_from_doors)[fact] or tuple(self.carried), self.described_by(fact)
+        doors = [door for door in self.doors if door.name == self.binding.get(meant)] if meant else self.rooms.sure
+        return tuple(door for door in doors if not any(self._passed(actor, door) for actor in actors))
 
     def shut(self, actor: str) -> tuple[Door, ...]:
         """Return the doors that neither the constraints of the task nor users' rules let an actor pass."""
@@ -203,10 +218,26 @@ class Situation:
         track = self.track if actor == ROBOT else self.carried.get(actor, ())
         return went_through(np.array(track).reshape(-1, 2) - (self.model.view.west, self.model.view.south), door)
 
-    def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
-        """Compute the squares of the rooms that share a door with the room of a point, (rows, columns) bool."""
+    def described_by(self, goal: Fact) -> str:
+        """Return the door or room of a goal of which start.lp claims something; "" where any will do."""
+        return next((str(term) for term in goal.args if str(term) in self.task.described), "")
+
+    def goal_rooms(self, goal: Fact, place: XY, rooms: Rooms, least: int) -> Bools:
+        """Compute the squares of the rooms where a goal holds for what began at a point, (rows, columns) bool."""
+        # The rooms may be another partition of the floor than that of the situation.
         row, column = self.model.view.locate(*place)
-        return rooms.beyond(int(rooms.labels[row, column]), least)
+        home, parameter = int(rooms.labels[row, column]), self.described_by(goal)
+        if not parameter:
+            return rooms.beyond(home, least)
+        meant = self.binding.get(parameter, "")
+        if self.task.parameters[parameter].kind == "door":
+            door = next((door for door in self.rooms.doors if door.name == meant), None)
+            found = [] if door is None else rooms.far_side(door.place, home)
+        else:
+            own = self.rooms.labels == int(meant[1:] or NO_ROOM)
+            found = [] if not meant else rooms.most_of(own, other_than=NO_ROOM if own[row, column] else home)
+        mask: Bools = np.isin(rooms.labels, found) & ~rooms.doorways
+        return mask
 
 
 def regions_kept_off(

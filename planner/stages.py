@@ -7,12 +7,18 @@ as one stage.
 
 from dataclasses import dataclass, replace
 
+from utak.kb.language.goal_words import CONSTRAINT_GOALS, GOAL_WORDS, ROBOT, TRACK_GOALS
 from utak.kb.language.terms import Fact, Number, Symbol, Term
-from utak.kb.language.vocabulary import CONSTRAINT_GOALS, ROBOT, TRACK_GOALS
-from utak.kb.task.task import WRAPPING_GOALS, Task
+from utak.kb.task.task import Task, inner_goal
 
-DOOR_GOALS = ("in", "through")  # goals that rest on a door of the room in which their subject was at first
-ORIGIN_GOALS = (*DOOR_GOALS, "around")  # goals whose meaning depends on where their subject was at first
+# Goals that rest on a door of the room in which their subject was at first
+DOOR_GOALS = tuple(name for name, word in GOAL_WORDS.items() if word.by_door)
+# Goals whose meaning depends on where their subject was at first
+ORIGIN_GOALS = tuple(name for name, word in GOAL_WORDS.items() if word.from_origin)
+# Goals whose two arguments touch where they hold, so that either of two things may be moved
+TOUCHING_GOALS = tuple(name for name, word in GOAL_WORDS.items() if word.touches)
+# Goals of which the task says where they hold, whatever is found
+FIXED_GOALS = tuple(name for name, word in GOAL_WORDS.items() if word.fixed)
 
 
 @dataclass(frozen=True)
@@ -49,13 +55,12 @@ class Stage:
 
 def stages(task: Task) -> tuple[Stage, ...]:
     """Split the goals of a task into its stages, in the order in which they shall hold."""
-    # Empty for a task of constraints alone.
     steps: list[list[Fact]] = [[]]
     for fact in task.goals:
         if fact.name == "then":
             steps.append([])
         if fact.name not in CONSTRAINT_GOALS and fact.name != "prefer":
-            steps[-1].append(_inner(fact))
+            steps[-1].append(inner_goal(fact))
     found = [stage for goals in steps for stage in _ordered(goals)]
     wished = wishes(task)
     return tuple(
@@ -68,9 +73,14 @@ def constraints(task: Task) -> tuple[Fact, ...]:
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
+def is_at_start(goal: Fact) -> bool:
+    """Return whether a goal is that something is where the robot woke."""
+    return goal.name == "at" and str(goal.args[1]) == "start"
+
+
 def rests_on_waking(goal: Fact) -> bool:
     """Return whether it depends on the very place where the robot woke if a goal for the robot itself holds."""
-    return goal.name in TRACK_GOALS or str(goal.args[1]) == "start"
+    return goal.name in TRACK_GOALS or is_at_start(goal)
 
 
 def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str]:
@@ -100,15 +110,8 @@ def wishes(task: Task) -> tuple[tuple[Fact, int], ...]:
         if fact.name == "prefer":
             weight = fact.args[1]
             assert isinstance(weight, Number)
-            found.append((_inner(fact), weight.value))
+            found.append((inner_goal(fact), weight.value))
     return tuple(found)
-
-
-def _inner(fact: Fact) -> Fact:
-    """Return the goal within first(...), then(...) or prefer(...); any other fact itself."""
-    inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
-    assert isinstance(inner, Symbol)
-    return inner
 
 
 def _ordered(goals: list[Fact]) -> list[Stage]:

@@ -32,14 +32,16 @@ MAY_USE = {
     "utak": {"numpy", "shapely"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
-# Libraries of extras, each met in one place alone and imported when it is used.
+# Libraries of extras, each met in its places alone and imported when it is used.
 OPTIONAL_IN = {
-    "pytest": "utak/pytest_plugin.py",
-    "PIL": "simulator/replay/gif.py",
-    "distributed": "simulator/sweep/executors/cluster.py",
-    "gymnasium": "utak/gym",
-    "prompt_toolkit": "simulator/repl",
-    "rich": "simulator/repl",
+    "pytest": ("utak/pytest_plugin.py",),
+    "PIL": ("simulator/replay/gif.py", "simulator/importing/ros_map.py"),
+    "yaml": ("simulator/importing/ros_head.py",),
+    "svg": ("simulator/importing/svg_outlines.py",),
+    "distributed": ("simulator/sweep/executors/cluster.py",),
+    "gymnasium": ("utak/gym",),
+    "prompt_toolkit": ("simulator/repl",),
+    "rich": ("simulator/repl",),
 }
 NUMBA_IN = ("geometry/kernels/jit.py", "geometry/kernels/cache.py")
 CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are solved, asked and traced
@@ -76,6 +78,12 @@ def tree_of(path: Path) -> ast.Module:
     return ast.parse(path.read_text())
 
 
+@cache
+def nodes_of(path: Path) -> tuple[ast.AST, ...]:
+    """Return all nodes of the syntax tree of a module; many laws go through them."""
+    return tuple(ast.walk(tree_of(path)))
+
+
 def modules(root: Path, packages: tuple[str, ...] = HOUSE) -> Iterator[Path]:
     """Yield the modules of some packages, sorted."""
     for package in packages:
@@ -96,7 +104,7 @@ def in_house(dotted: str) -> str:
 def imports(path: Path, as_written: bool = False) -> Iterator[tuple[str, str]]:
     """Yield (module, name) for each import at whatever depth; the name is "" for `import module`."""
     name_of = str if as_written else in_house
-    for node in ast.walk(tree_of(path)):
+    for node in nodes_of(path):
         if isinstance(node, ast.Import):
             yield from ((name_of(alias.name), "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -127,7 +135,7 @@ def imports_from_the_top(root: Path) -> Iterator[str]:
 def relative_imports(root: Path) -> Iterator[str]:
     """Every import is absolute, so that a reader sees which room it comes from."""
     for path in modules(root, MEASURED):
-        if any(isinstance(node, ast.ImportFrom) and node.level for node in ast.walk(tree_of(path))):
+        if any(isinstance(node, ast.ImportFrom) and node.level for node in nodes_of(path)):
             yield f"{short(path, root)} has a relative import"
 
 
@@ -140,7 +148,7 @@ def others_used(root: Path) -> Iterator[str]:
                 continue
             if library in OPTIONAL_IN:
                 if not name.startswith(OPTIONAL_IN[library]):
-                    yield f"{name} uses {library}, which {OPTIONAL_IN[library]} alone may"
+                    yield f"{name} uses {library}, which {' and '.join(OPTIONAL_IN[library])} alone may"
             elif library not in MAY_USE[name.split("/")[0]]:
                 yield f"{name} uses {library}"
             if library == "numba" and name not in NUMBA_IN:
@@ -231,7 +239,7 @@ def vague_constants(root: Path) -> Iterator[str]:
 
 def docstrings(path: Path) -> Iterator[tuple[int, str]]:
     """Yield (line, text) of each docstring of a module, its classes and functions."""
-    for node in ast.walk(tree_of(path)):
+    for node in nodes_of(path):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             text = ast.get_docstring(node)
             if text:
@@ -249,7 +257,7 @@ def riddles(root: Path) -> Iterator[str]:
 def long_docstrings(root: Path) -> Iterator[str]:
     """A docstring that no user reads has one line, examples aside: the name and the types say the rest."""
     for path in modules(root):
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if isinstance(node, ast.FunctionDef) and node.name.startswith("_") and not node.name.endswith("__"):
                 text = ast.get_docstring(node) or ""
                 if "\n" in text and ">>>" not in text:
@@ -311,7 +319,7 @@ def inherited_classes(root: Path) -> Iterator[str]:
     """No class of ours inherits from another one of ours: parts are put together, not mixed in."""
     ours = {node.name for path in modules(root) for node in tree_of(path).body if isinstance(node, ast.ClassDef)}
     for path in modules(root):
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if isinstance(node, ast.ClassDef) and not node.name.endswith("Error"):
                 for base in node.bases:
                     if isinstance(base, ast.Name) and base.id in ours:
@@ -334,7 +342,7 @@ def thunks(root: Path) -> Iterator[str]:
             for target in node.targets
             if isinstance(target, ast.Name)
         }
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if isinstance(node, ast.ClassDef) and is_frozen(node):
                 for field in node.body:
                     if isinstance(field, ast.AnnAssign):
@@ -347,7 +355,8 @@ def words_of_simulator(root: Path) -> Iterator[str]:
     """Nothing below the simulator speaks of it, in a name, a string or a comment."""
     for path in modules(root, ("geometry", "kb", "planner")):
         kinds = (tokenize.NAME, tokenize.STRING, tokenize.COMMENT)
-        for token in tokenize.generate_tokens(io.StringIO(path.read_text()).readline):
+        text = path.read_text()
+        for token in tokenize.generate_tokens(io.StringIO(text).readline) if "simulator" in text else ():
             if token.type in kinds and "simulator" in token.string:
                 yield f"{short(path, root)}:{token.start[0]} speaks of the simulator"
 
@@ -380,6 +389,7 @@ def patched_globals(root: Path) -> Iterator[str]:
 PATCHING = re.compile(
     r"(.*\.)?(set|del)(attr|item)|(unittest\.)?(mock\.|mocker\.)?patch(\.(object|multiple|dict))?", re.DOTALL
 )
+PATCHING_NAMES = {"setattr", "delattr", "setitem", "delitem", "patch", "object", "multiple", "dict"}  # their last words
 PATCHED_ARGUMENTS = ("target", "dic", "in_dict")  # the names of their first arguments
 
 
@@ -395,7 +405,8 @@ def _programs_in(tree: ast.Module) -> Iterator[tuple[int, ast.Module]]:
 
 def _patched(node: ast.AST) -> Iterator[ast.expr]:
     """Yield the expressions for that in which a statement or a call puts something else."""
-    if isinstance(node, ast.Call) and PATCHING.fullmatch(ast.unparse(node.func)):
+    last = getattr(node.func, "attr", getattr(node.func, "id", "")) if isinstance(node, ast.Call) else ""
+    if isinstance(node, ast.Call) and last in PATCHING_NAMES and PATCHING.fullmatch(ast.unparse(node.func)):
         yield from node.args[:1]
         yield from (word.value for word in node.keywords if word.arg in PATCHED_ARGUMENTS)
     elif isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store | ast.Del):

@@ -80,6 +80,7 @@ def pages(kind: str) -> list[Any]:
     return few(shown, set(QUICK) & set(shown))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", pages("console"), ids=named)
 def test_commands_of_a_page_do_what_it_shows(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

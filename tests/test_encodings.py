@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
-from tests.tables import few
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.encodings import encoding_text
 from utak.kb.reasoning.solver import solve
@@ -33,7 +32,8 @@ def test_case(encoding: Path, case: Case) -> None:
     assert not disagreement(case, optimal_answers(encoding_text(encoding), case.facts))
 
 
-@pytest.mark.parametrize(("encoding", "statement"), few(STATEMENTS, 60), ids=place)
+@pytest.mark.long
+@pytest.mark.parametrize(("encoding", "statement"), STATEMENTS, ids=place)
 def test_every_statement_matters(encoding: Path, statement) -> None:
     rest = without(encoding, statement)
     assert any(disagreement(case, optimal_answers(rest, case.facts, strict=False)) for case in cases_of(encoding)), (

@@ -58,6 +58,7 @@ def test_a_notebook_has_the_form_of_jupyter(path: Path) -> None:
     nbformat.validate(nbformat.read(path, as_version=4))
 
 
+@pytest.mark.long
 def test_the_first_steps_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(FOLDER)
     names: dict[str, Any] = {"__name__": "__main__"}

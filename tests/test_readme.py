@@ -86,6 +86,7 @@ def test_the_first_task_as_it_is_typed(
     typed(wrong, capsys, monkeypatch)
 
 
+@pytest.mark.long
 def test_the_picture_is_of_this_robot(tmp_path: Path) -> None:
     """docs/run.svg, which README shows, is what docs/build_picture.py makes of a run of today's robot."""
     spec = importlib.util.spec_from_file_location("build_picture", ROOT / "docs" / "build_picture.py")

@@ -1,14 +1,24 @@
 """The vocabulary page is what the encodings say, and the world model states the facts that they declare."""
 
 import importlib.util
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.kb.drawings import known_model
+from utak.geometry.shapes.classes import CLASSES
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
-from utak.kb.reasoning.query import QUERY_PREDICATES
+from utak.kb.language.vocabulary import (
+    BELIEF_PREDICATES,
+    GOAL_VOCABULARY,
+    OUTLINE_CLASSES,
+    SETTLING_STEPS,
+    SHAPE_CLASSES,
+)
 from utak.kb.world.corners import corners
 from utak.kb.world.facts import Places, model_facts
 from utak.kb.world.rooms import rooms_of
@@ -46,7 +56,32 @@ def declared() -> set[tuple[str, int]]:
 
 
 def test_queries_know_the_declared_facts() -> None:
-    assert set(QUERY_PREDICATES) - {("object", 1)} == declared()
+    assert set(BELIEF_PREDICATES) - {("object", 1)} == declared()
+
+
+def test_each_step_that_settles_something_has_its_rules() -> None:
+    texts = [file.read_text() for file in (ROOT / "planner" / "asp" / "task").glob("*.lp")]
+    assert {name for text in texts for name in re.findall(r"^settles\((\w+)\(", text, re.MULTILINE)} == set(
+        SETTLING_STEPS
+    )
+
+
+def test_tasks_can_claim_each_class_of_shapes() -> None:
+    assert {one.name for one in CLASSES} == set(OUTLINE_CLASSES)
+
+
+@pytest.mark.parametrize(
+    ("page", "words"),
+    [
+        ("files", {*SHAPE_CLASSES, *GOAL_VOCABULARY}),
+        ("planning", set(SETTLING_STEPS)),
+        ("architecture", set(SETTLING_STEPS)),
+    ],
+)
+def test_pages_have_each_word_of_the_tables(page: str, words: set[str]) -> None:
+    text = re.sub("```.*?```", "", (ROOT / "docs" / f"{page}.md").read_text(), flags=re.DOTALL)
+    code = re.findall("`[^`]+`", text)
+    assert words <= set(re.findall(r"\w+", " ".join(code)))
 
 
 def test_the_world_model_writes_declared_facts_alone() -> None:

@@ -15,7 +15,6 @@ run            the robot in a scenario, step by step; forks of a run
 mind           another mind in the same body
 episode        the record of a run, and its steps
 beliefs        what is believed after a step, and the answers to questions about it
-errors         what is raised besides ValueError and TypeError
 explaining     why something is believed or was done
 markup         tables and captions for notebooks, as HTML
 gym            TABLETOP as a Gymnasium environment (extra `gym`)
@@ -32,39 +31,23 @@ if not os.path.isdir(os.path.join(__path__[0], "kb")):  # noqa: PTH112, PTH118
 
 TYPE_CHECKING = False  # not imported from typing, which takes most of the time of `import utak`
 if TYPE_CHECKING:
-    from utak.beliefs import Answer, World
-    from utak.episode import Episode, Step
-    from utak.errors import RunNotRepeatedError
-    from utak.explaining import ReasonTree
-    from utak.kb.body import Grasp, Impression, Move, Push, Release, Turn
-    from utak.kb.language.diagnostics import BadInputError, CannotOpenError
-    from utak.kb.reasoning.query import QueryLimitError
-    from utak.mind import Mind, Verdict
-    from utak.run import Plan, Run
-    from utak.scenario import Scenario
-
-__all__ = [
-    "Answer",
-    "BadInputError",
-    "CannotOpenError",
-    "Episode",
-    "Grasp",
-    "Impression",
-    "Mind",
-    "Move",
-    "Plan",
-    "Push",
-    "QueryLimitError",
-    "ReasonTree",
-    "Release",
-    "Run",
-    "RunNotRepeatedError",
-    "Scenario",
-    "Step",
-    "Turn",
-    "Verdict",
-    "World",
-]
+    from utak.beliefs import Answer as Answer, World as World
+    from utak.episode import Episode as Episode, Step as Step
+    from utak.explaining import ReasonTree as ReasonTree
+    from utak.kb.body import (
+        Grasp as Grasp,
+        Impression as Impression,
+        Move as Move,
+        Push as Push,
+        Release as Release,
+        Turn as Turn,
+    )
+    from utak.kb.language.diagnostics import BadInputError as BadInputError, CannotOpenError as CannotOpenError
+    from utak.kb.reasoning.query import QueryLimitError as QueryLimitError
+    from utak.mind import Mind as Mind, Verdict as Verdict
+    from utak.run import Plan as Plan, Run as Run
+    from utak.scenario import Scenario as Scenario
+    from utak.simulator.run.session import RunNotRepeatedError as RunNotRepeatedError
 
 _MODULES = {
     **dict.fromkeys(("Grasp", "Impression", "Move", "Push", "Release", "Turn"), "utak.kb.body"),
@@ -73,11 +56,12 @@ _MODULES = {
     **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
     **dict.fromkeys(("Episode", "Step"), "utak.episode"),
     "ReasonTree": "utak.explaining",
-    "RunNotRepeatedError": "utak.errors",
+    "RunNotRepeatedError": "utak.simulator.run.session",
     **dict.fromkeys(("Mind", "Verdict"), "utak.mind"),
     **dict.fromkeys(("Plan", "Run"), "utak.run"),
     "Scenario": "utak.scenario",
 }
+__all__ = sorted(_MODULES)
 
 
 if not TYPE_CHECKING:  # so that type checkers know the public names and no others

@@ -62,7 +62,6 @@ class Answer:
         return str(self)
 
     def _repr_html_(self) -> str:
-        """Return the answer as a table for notebooks."""
         if self.kind != "bindings":
             return escape(self.kind)
         shown = table(self.variables, self.rows[:MAX_ROWS_SHOWN])
@@ -155,18 +154,15 @@ class World:
         return f"<World at step {self.step}: {len(self.facts)} facts; objects: {', '.join(objects) or 'none'}>"
 
     def _repr_svg_(self) -> str:
-        """Return what is believed as a picture for notebooks, in the robot frame."""
         return belief_svg(self.facts, self.place)
 
     def _repr_html_(self) -> str:
-        """Return the picture with a caption for notebooks."""
         return framed(escape(repr(self)[1:-1]), self._repr_svg_())
 
 
 def world_of(line: Mapping[str, Any], rules: tuple[str, ...] = ()) -> World:
     """Return what is believed in the line of an episode's step."""
-    belief = line.get("belief", {})
-    return World(int(line["step"]), tuple(map(str, belief.get("facts", ()))), belief, rules)
+    return World(line["step"], tuple(line["belief"]["facts"]), line["belief"], rules)
 
 
 @cache

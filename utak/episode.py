@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any, overload
 
 from utak.beliefs import World, world_of
-from utak.explaining import ReasonTree, questions
+from utak.explaining import ReasonTree
 from utak.kb.body import Impression
 from utak.markup import framed, table
 from utak.simulator.episode.episode import Episode as EpisodeRecord
 from utak.simulator.episode.episode import encode, read_episode
 from utak.simulator.episode.output_files import is_episode, write_whole
-from utak.simulator.explaining.questions import Questions
+from utak.simulator.explaining.missing_rules import rule_paths
+from utak.simulator.explaining.questions import Questions, questions_of_episode
 from utak.simulator.replay.drawing import step_svg
 from utak.simulator.terminal.action_in_words import describe
 
@@ -92,7 +93,7 @@ class Step:
         BadInputError
             The episode does not record what is needed.
         """
-        asked = questions(self._record, self._rules)
+        asked = questions_of_episode(self._record, rule_paths(self._rules))
         return ReasonTree(asked.why_step(self.number), asked.lacking)
 
     def __repr__(self) -> str:
@@ -100,11 +101,9 @@ class Step:
         return f"<Step {self.number}: {self.action}: {self.why}>"
 
     def _repr_svg_(self) -> str:
-        """Return the table and what is sensed and believed, as a picture for notebooks."""
         return step_svg(self._record, self.line)
 
     def _repr_html_(self) -> str:
-        """Return the picture with the command and its reason for notebooks."""
         return framed(f"<b>{self.number}: {escape(self.action)}</b> {escape(self.why)}", self._repr_svg_())
 
 
@@ -275,7 +274,7 @@ class Episode(Sequence[Step]):
     @cached_property
     def _questions(self) -> Questions:
         """The questions about this episode, with its record read."""
-        return questions(self.record, self.rules)
+        return questions_of_episode(self.record, rule_paths(self.rules))
 
     def __repr__(self) -> str:
         """Return the number of commands and how the run ended."""
@@ -284,11 +283,9 @@ class Episode(Sequence[Step]):
         return f"<Episode of {commands} command{'s' * (commands != 1)}; {end}>"
 
     def _repr_svg_(self) -> str:
-        """Return the last step as a picture for notebooks."""
         return self[-1]._repr_svg_()
 
     def _repr_html_(self) -> str:
-        """Return the last step, the end and a list of the commands for notebooks."""
         rows = [(step.number, step.action, step.why) for step in self[:MAX_STEPS_SHOWN]]
         steps = table(("step", "command", "why"), rows)
         caption = f"{escape(repr(self)[1:-1])}<details><summary>steps</summary>{steps}</details>"

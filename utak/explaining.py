@@ -5,8 +5,6 @@ from html import escape
 from typing import Any
 
 from utak.kb.evidence.reason import Depth, Reason
-from utak.simulator.episode.episode import Episode as EpisodeRecord
-from utak.simulator.explaining.questions import Questions, questions_of_episode, rule_paths
 
 OPEN_LEVELS = 2  # levels of a tree that a notebook shows unfolded; a convention
 
@@ -66,11 +64,6 @@ class ReasonTree:
     def _note(self) -> str:
         """The line about what is lacking, and how that is mended; "" for nothing."""
         return f"note: {self.lacking}; give rules with Episode.read(path, rules=[...])" if self.lacking else ""
-
-
-def questions(record: EpisodeRecord, rules: tuple[str, ...]) -> Questions:
-    """Return what answers questions about a run; rules : the files with users' rules that took part."""
-    return questions_of_episode(record, rule_paths(rules))
 
 
 def _unfolding(reason: Reason, levels: int) -> str:

@@ -2,16 +2,15 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
 
-from utak.kb.body import Body, Command, Grasp, Impression, Move, Push, Release, Turn
+from utak.kb.body import COMMANDS, Body, Command, Impression
 from utak.kb.task.task import Task
-from utak.planner.decision import Decision
+from utak.planner.decision import Decision, StepReport, TaskVerdict
+from utak.planner.decision import Verdict as RobotVerdict
 from utak.simulator.run.session import CannotAdoptError
 from utak.simulator.scenario.settings import Settings
 
-VERDICT_KINDS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
-MIND_COMMANDS = (Move, Push, Turn, Grasp, Release)
+VERDICT_KINDS = tuple(map(str, TaskVerdict))  # as episodes name them (docs/files.md)
 
 
 @dataclass(frozen=True)
@@ -83,25 +82,6 @@ class Mind:
         return ()
 
 
-@dataclass(frozen=True)
-class MindReport:
-    """The report of a mind after an impression, as sessions take it."""
-
-    command: Command | None  # the command before the impression; None on waking
-    impression: Impression  # what the body returned
-    belief: dict[str, Any]  # what the mind believes, as JSON values
-    why: str  # the reason of the command
-
-
-@dataclass(frozen=True)
-class MindVerdict:
-    """The verdict of a mind, as sessions take it."""
-
-    believed: bool  # whether the mind believes that the task is done
-    verdict: str  # the kind of the verdict
-    reason: str  # why, in words
-
-
 class MindRobot:
     """A robot whose mind is a `Mind`; satisfies the protocol of `utak.simulator.run.session`."""
 
@@ -112,11 +92,11 @@ class MindRobot:
         self._steps = 0
         mind.begin(task)
 
-    def wake(self) -> MindReport:
+    def wake(self) -> StepReport:
         """Take the first impression and return the report on it."""
         return self._taken_in(None, self._body.wake())
 
-    def step(self) -> MindReport:
+    def step(self) -> StepReport:
         """Give the command that the mind has chosen, and return the report on the impression after it."""
         if isinstance(self._next, Verdict):
             raise ValueError("the run is finished")
@@ -129,12 +109,12 @@ class MindRobot:
         return isinstance(self._next, Verdict)
 
     @property
-    def verdict(self) -> MindVerdict:
+    def verdict(self) -> RobotVerdict:
         """The verdict at the end."""
         found = self._next if isinstance(self._next, Verdict) else Verdict("limit", "the run was not finished")
-        return MindVerdict(found.kind == "done", found.kind, found.reason)
+        return RobotVerdict(found.kind == "done", TaskVerdict(found.kind), found.reason)
 
-    def adopt(self, task: Task, settings: Settings) -> MindReport:
+    def adopt(self, task: Task, settings: Settings) -> StepReport:
         """Take another task and other options from the newest impression on, and return the report on it anew."""
         # Raises CannotAdoptError for other rules: a mind has none.
         if settings.kb_files != self._settings.kb_files:
@@ -156,23 +136,22 @@ class MindRobot:
     def _asked(self, impression: Impression) -> Command | Verdict:
         """Return what the mind answers to an impression: a command, or the verdict; also when commands are used up."""
         chosen = self.mind.step(impression)
-        if not isinstance(chosen, (*MIND_COMMANDS, Verdict)):
-            kinds = ", ".join(kind.__name__ for kind in (*MIND_COMMANDS, Verdict))
+        if not isinstance(chosen, (*COMMANDS, Verdict)):
+            kinds = ", ".join(kind.__name__ for kind in (*COMMANDS, Verdict))
             raise TypeError(f"{type(self.mind).__name__}.step must return one of {kinds}, not {chosen!r}")
         if not isinstance(chosen, Verdict) and self._steps >= self._settings.max_steps:
             chosen = Verdict("limit", f"not done after {self._steps} commands")
         return chosen
 
-    def _taken_in(self, command: Command | None, impression: Impression) -> MindReport:
+    def _taken_in(self, command: Command | None, impression: Impression) -> StepReport:
         """Ask the mind for the next command, and return the report."""
         self._next, self._newest = self._asked(impression), (command, impression)
         return self._report(command, impression)
 
-    def _report(self, command: Command | None, impression: Impression) -> MindReport:
-        """Return the report on an impression."""
+    def _report(self, command: Command | None, impression: Impression) -> StepReport:
         name = type(self.mind).__name__
         facts = [str(fact) for fact in self.mind.facts()]
-        return MindReport(command, impression, {"facts": facts}, f"{name} {'wakes' if command is None else 'chose it'}")
+        return StepReport(command, impression, {"facts": facts}, f"{name} {'wakes' if command is None else 'chose it'}")
 
 
 def mind_maker(mind: Callable[[], Mind]) -> Callable[[Body, Task, Settings], MindRobot]:

@@ -11,20 +11,21 @@ from typing import Any
 
 import pytest
 
-from utak.simulator.testing.handle import WorkerEndedError, WorkerHandle
+from utak.simulator.scenario.settings import MAX_NOISE, MAX_SEED, MAX_STEPS
+from utak.simulator.sweep.executors.task_process import TaskProcess
+from utak.simulator.sweep.executors.tasks import TRYING_FUNCTION, WorkerTask, bug_of
 
 EXPECTATION_FILE = "expect.lp"  # the file that stands for a scenario's test
 # The other files of a scenario: at least one lies beside expect.lp. Missing ones are reported by the test.
 OTHER_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp")
 MARKER = "utak"  # every scenario's test bears it
-# The options by their fields in the settings of a run: name on the command line, type and help.
+# The options by their fields in the settings of a run: name on the command line, greatest value, its letter, and help.
 OPTIONS = {
-    "seed": ("--utak-seed", int, "N", "seed of all randomness in scenarios"),
-    "noise": ("--utak-noise", float, "S", "how much motions are disturbed in scenarios, 0 to 1"),
-    "max_steps": ("--utak-max-steps", int, "N", "give up a scenario after so many commands"),
+    "seed": ("--utak-seed", MAX_SEED, "N", "seed of all randomness in scenarios"),
+    "noise": ("--utak-noise", MAX_NOISE, "S", "how much motions are disturbed in scenarios, 0 to 1"),
+    "max_steps": ("--utak-max-steps", MAX_STEPS, "N", "give up a scenario after so many commands"),
 }
-HANDLE_KEY = pytest.StashKey[WorkerHandle]()  # where pytest's configuration keeps the handle of the process
-GREATEST = {"seed": 2**63 - 1, "noise": 1.0, "max_steps": 1_000_000}  # values of the options, as for `utak run`
+HANDLE_KEY = pytest.StashKey[TaskProcess]()  # where pytest's configuration keeps the handle of the process
 
 
 class ScenarioFailedError(Exception):
@@ -34,8 +35,8 @@ class ScenarioFailedError(Exception):
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare the options and the settings of ini files."""
     group = parser.getgroup("utak", "scenarios of Utak")
-    for name, (option, kind, value, what) in OPTIONS.items():
-        group.addoption(option, dest=f"utak_{name}", type=kind, metavar=value, default=None, help=what)
+    for name, (option, greatest, value, what) in OPTIONS.items():
+        group.addoption(option, dest=f"utak_{name}", type=type(greatest), metavar=value, default=None, help=what)
     group.addoption("--no-utak", dest="utak_off", action="store_true", help="collect no scenarios")
     parser.addini("utak_scenarios", "whether scenario folders are collected as tests", type="bool", default=True)
 
@@ -43,10 +44,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Declare the marker and check the options."""
     config.addinivalue_line("markers", f"{MARKER}: a scenario folder of Utak, run and compared with its expect.lp")
-    for name, greatest in GREATEST.items():
+    for name, (option, greatest, _, _) in OPTIONS.items():
         value = config.getoption(f"utak_{name}")
         if value is not None and not 0 <= value <= greatest:
-            raise pytest.UsageError(f"{OPTIONS[name][0]} must be from 0 to {greatest:g}, not {value:g}")
+            raise pytest.UsageError(f"{option} must be from 0 to {greatest:g}, not {value:g}")
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "ScenarioFile | None":
@@ -64,13 +65,6 @@ def pytest_unconfigure(config: pytest.Config) -> None:
     kept = config.stash.get(HANDLE_KEY, None)
     if kept is not None:
         kept.close()
-
-
-def _handle(config: pytest.Config, start: str) -> WorkerHandle:
-    """Return the handle of the process that runs scenarios, made once a session."""
-    if HANDLE_KEY not in config.stash:
-        config.stash[HANDLE_KEY] = WorkerHandle(start)
-    return config.stash[HANDLE_KEY]
 
 
 class ScenarioFile(pytest.File):
@@ -95,10 +89,13 @@ class ScenarioItem(pytest.Item):
         given = {name: value for name, value in options.items() if value is not None}
         start = self.config.invocation_params.dir
         folder = str(self.path.parent.relative_to(start) if self.path.is_relative_to(start) else self.path.parent)
-        try:
-            record = _handle(self.config, str(start)).ask({"folder": folder, "root": folder, "given": given})
-        except WorkerEndedError as ended:
-            raise ScenarioFailedError(f"{folder}: this is a bug of ours: {ended}") from None
+        wish = WorkerTask(TRYING_FUNCTION, {"folder": folder, "root": folder, "given": given})
+        if HANDLE_KEY not in self.config.stash:  # made once a session
+            self.config.stash[HANDLE_KEY] = TaskProcess(folder=str(start), is_quiet=False)
+        outcome = self.config.stash[HANDLE_KEY].run(wish)
+        if outcome.failure:
+            raise ScenarioFailedError(f"{folder}: {bug_of(outcome)}")
+        record = outcome.value
         if record["points"] is not None:
             self.user_properties += [(f"points_{name}", value) for name, value in record["points"].items()]
         if record["exit_code"]:

@@ -1,27 +1,23 @@
 """The robot in a scenario, step by step: what it does, believes and plans; forks of a run."""
 
 from collections.abc import Callable, Iterator, Sequence
-from copy import deepcopy
+from copy import copy
 from dataclasses import dataclass, replace
-from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from utak.beliefs import World
 from utak.episode import Episode, Step
-from utak.errors import RunNotRepeatedError
 from utak.kb.body import Command, Impression
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.world.stated_plan import StatedPlan, stated_plan
 from utak.markup import framed, table
 from utak.mind import Mind, mind_maker
 from utak.scenario import Scenario
-from utak.simulator.episode.episode import Episode as EpisodeRecord
-from utak.simulator.episode.episode import EpisodeLog
-from utak.simulator.episode.record import action_entry, header
-from utak.simulator.run.robots import make_robot, warm_for
-from utak.simulator.run.session import RobotMaker, Session
+from utak.simulator.episode.record import action_entry
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.story import live_story
 from utak.simulator.scenario.settings import PATH_CHOICES, Settings, kb_files_named
 from utak.simulator.terminal.action_in_words import describe
 
@@ -62,11 +58,9 @@ class Plan:
 
     @property
     def _next(self) -> str:
-        """The next command in words."""
         return describe(action_entry(self.command)) if self.command else "end"
 
     def _repr_html_(self) -> str:
-        """Return the plan for notebooks: the next command, and a table of the steps of the task plan."""
         shown = f"<p>next: <b>{escape(self._next)}</b>: {escape(self.why)}</p>"
         if self.task is None:
             return shown + "".join(f"<div><code>{escape(step)}</code></div>" for step in self.steps)
@@ -142,20 +136,10 @@ class Run:
         files = kb_files_named([str(file) for file in rules])
         settings = Settings(int(seed), float(noise), paths, max_steps, files, pull)
         _check(settings)
-        make = make_robot if mind is None else mind_maker(mind)
-        self._set(scenario, settings, make, partial(_begin, scenario, settings, make))
-
-    def _set(self, scenario: Scenario, settings: Settings, make: RobotMaker, begin: Callable[[], Session]) -> None:
-        """Set all that a run consists of, and begin it."""
         self.scenario, self.settings = scenario, settings
-        self._make, self._begin = make, begin
-        self._head = header(scenario.content, settings)
-        session = begin()
-        self._session: Session | None = session
-        self._lines = [session.line]
-        self._first_own = 1  # the number of the first step that is not repeated by `begin`
-        self._result: dict[str, Any] | None = None
-        self._end_if_finished(session)
+        make = make_robot if mind is None else mind_maker(mind)
+        self._story = live_story(scenario.content, settings, make, goes_back=False)
+        assert self._story.line  # the robot wakes
 
     def step(self) -> Step | None:
         """Let the robot act once.
@@ -170,14 +154,7 @@ class Run:
         RunNotRepeatedError
             A step was interrupted before this one, and the mind does not repeat its commands.
         """
-        if self._result is not None:
-            return None
-        session = self._session or self._repeated()
-        self._session = None  # a session with an interrupted step is not used again
-        self._lines.append(session.step())
-        self._end_if_finished(session)
-        self._session = session
-        return self.episode[-1]
+        return self.episode[-1] if self._story.advance() else None
 
     def finish(self) -> Episode:
         """Let the robot act until it has a verdict, and return the episode."""
@@ -235,25 +212,12 @@ class Run:
         given: dict[str, Any] = {"seed": seed, "noise": noise, "max_steps": max_steps}
         settings = replace(self.settings, **{name: value for name, value in given.items() if value is not None})
         _check(settings)
-        copied = Run.__new__(Run)
-        copied.scenario, copied.settings, copied._make = scenario, settings, self._make
-        copied._lines, copied._head, copied._result = list(self._lines), self._head, self._result
-        copied._begin, copied._first_own = self._begin, self._first_own
-        session = self._copied_session()
+        forked = copy(self)
+        forked._story = self._story.fork()
         if scenario is not self.scenario or settings != self.settings:
-            copied._begin = partial(
-                _changed, self._begin, self._lines[self._first_own :], scenario, settings, self._make
-            )
-            copied._first_own = len(self._lines)
-            stage = {"until": len(self._lines) - 1, "options": self._head["options"], "task": self._head["task"]}
-            stages = [*self._head.get("forked", ()), stage]
-            copied._head = header(scenario.content, settings) | {"forked": stages}
-            copied._result = None
-            warm_for(self._make, scenario.content.task, settings)
-            copied._lines[-1] = session.adopt(scenario.content, settings)
-            copied._end_if_finished(session)
-        copied._session = session
-        return copied
+            forked.scenario, forked.settings = scenario, settings
+            forked._story.adopt(scenario.content, settings)
+        return forked
 
     def __iter__(self) -> Iterator[Step]:
         """Yield the steps that are still to come."""
@@ -263,7 +227,7 @@ class Run:
     @property
     def episode(self) -> Episode:
         """The episode so far, from waking on; it does not grow when the run goes on."""
-        return Episode(EpisodeRecord(self._head, tuple(self._lines), self._result), self.settings.kb_files)
+        return Episode(self._story.episode, self.settings.kb_files)
 
     @property
     def world(self) -> World:
@@ -278,23 +242,21 @@ class Run:
     @property
     def plan(self) -> Plan:
         """The plan now: the next command and why, the way that was chosen for it, and the task plan."""
-        belief = self._lines[-1].get("belief", {})
-        facts = tuple(belief.get("facts", ()))
+        belief = self._story.line["belief"]
+        facts = belief["facts"]
         steps = tuple(fact.removesuffix(".") for fact in facts if fact.startswith("plan("))
         task = _task_plan(facts)
         chosen = next((route["points"] for route in belief.get("routes", ()) if route["chosen"]), ())
         route = tuple((float(east), float(north)) for east, north in chosen)
-        if self._result is not None:
-            return Plan(None, str(self._result["reason"]), steps, (), task)
-        if self._session is None:  # a step was interrupted
-            self._session = self._repeated()
-        robot: Any = self._session.robot
-        return Plan(robot.decision.command, robot.decision.why, steps, route, task)
+        result, decision = self._story.result, self._story.decision
+        if result is not None or decision is None:
+            return Plan(None, "" if result is None else str(result["reason"]), steps, (), task)
+        return Plan(decision.command, decision.why, steps, route, task)
 
     @property
     def finished(self) -> bool:
         """Whether there is a verdict."""
-        return self._result is not None
+        return self._story.result is not None
 
     @property
     def verdict(self) -> str | None:
@@ -313,38 +275,18 @@ class Run:
 
     def __repr__(self) -> str:
         """Return the number of commands and how the run ended, if it did."""
-        commands = len(self._lines) - 1
-        end = "" if self._result is None else f"; {self._result['verdict']}: {self._result['reason']}"
+        commands, result = self._story.at, self._story.result
+        end = "" if result is None else f"; {result['verdict']}: {result['reason']}"
         return f"<Run after {commands} command{'s' * (commands != 1)}{end}>"
 
     def _repr_svg_(self) -> str:
-        """Return the last step as a picture for notebooks."""
         return self.episode[-1]._repr_svg_()
 
     def _repr_html_(self) -> str:
-        """Return the last step and what is planned for notebooks."""
         last = self.episode[-1]
         plan = f"<br/>{escape(repr(self)[1:-1])}" if self.finished else self.plan._repr_html_()
         caption = f"<b>{last.number}: {escape(last.action)}</b> {escape(last.why)}{plan}"
         return framed(caption, self._repr_svg_())
-
-    def _end_if_finished(self, session: Session) -> None:
-        """Judge the run when the robot has a verdict."""
-        if session.finished:
-            self._result = session.end().line["result"]
-
-    def _copied_session(self) -> Session:
-        """Return a session in the state of this run's last step, which shares nothing with this run."""
-        if self._session is None:
-            return self._repeated()
-        try:
-            return deepcopy(self._session)
-        except Exception:  # of whatever kind: a mind may hold files, locks or generators
-            return self._repeated()
-
-    def _repeated(self) -> Session:
-        """Return a new session at the last complete step of this run."""
-        return _repeat(self._begin, self._lines[self._first_own :])
 
 
 def _task_plan(facts: Sequence[str]) -> StatedPlan | None:
@@ -353,37 +295,6 @@ def _task_plan(facts: Sequence[str]) -> StatedPlan | None:
         return stated_plan(facts)
     except BadInputError:
         return None
-
-
-def _begin(scenario: Scenario, settings: Settings, make: RobotMaker) -> Session:
-    """Return a new session in which the robot is awake."""
-    session = Session(scenario.content, settings, make, EpisodeLog(None))
-    session.wake()
-    return session
-
-
-def _repeat(begin: Callable[[], Session], lines: Sequence[dict[str, Any]]) -> Session:
-    """Return a new session that went through some steps again."""
-    # Raises RunNotRepeatedError when one came out otherwise.
-    session = begin()
-    for line in lines:
-        if session.finished or session.step() != line:
-            raise RunNotRepeatedError(f"step {line['step']} came out otherwise when the run was repeated")
-    return session
-
-
-def _changed(
-    begin: Callable[[], Session],
-    lines: Sequence[dict[str, Any]],
-    scenario: Scenario,
-    settings: Settings,
-    make: RobotMaker,
-) -> Session:
-    """Return a new session that went through some steps again, and then goes on with other options."""
-    session = _repeat(begin, lines)
-    warm_for(make, scenario.content.task, settings)
-    session.adopt(scenario.content, settings)
-    return session
 
 
 def _check(settings: Settings) -> None:

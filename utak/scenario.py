@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.task.task import Task, read_task
+from utak.kb.task.task import read_task, start_facts_of
 from utak.markup import framed
 from utak.simulator.replay.drawing import table_svg
 from utak.simulator.scenario import scenario as files
 from utak.simulator.scenario.expectation import read_expectations
 from utak.simulator.scenario.picture import draw
+from utak.simulator.sweep.contents import written
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,7 +125,10 @@ class Scenario:
         BadInputError
             Texts have errors; the message names every one with its place.
         """
-        texts = {"start.lp": _start_text(self.content.task) if start is None else start, "goal.lp": goal}
+        texts = {
+            "start.lp": "".join(f"{fact}.\n" for fact in start_facts_of(self.content.task)) if start is None else start,
+            "goal.lp": goal,
+        }
         if expect is not None:
             texts["expect.lp"] = expect
         world = self.content.world
@@ -162,11 +165,9 @@ class Scenario:
         return f"<Scenario{name}: {world.width} x {world.height} squares, {things}; {', '.join(self.goals)}>"
 
     def _repr_svg_(self) -> str:
-        """Return the table as a picture for notebooks."""
         return table_svg(self.content.world)
 
     def _repr_html_(self) -> str:
-        """Return the table with the goals for notebooks."""
         return framed(f"<b>{escape(self.name or 'scenario')}</b>: {escape(', '.join(self.goals))}", self._repr_svg_())
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Scenario":
@@ -176,17 +177,8 @@ class Scenario:
 
 def _read_texts(texts: dict[str, str], read: Callable[[Path], files.Scenario]) -> files.Scenario:
     """Return what is read from a folder with some texts as files; errors name the files without the folder."""
-    with TemporaryDirectory(prefix="utak") as folder:
-        for file, text in texts.items():
-            Path(folder, file).write_bytes(text.encode("utf-8", errors="surrogateescape"))
+    with written([*texts.items()]) as folder:
         try:
-            return read(Path(folder))
+            return read(folder)
         except BadInputError as bad:
             raise BadInputError(problem._replace(file=Path(problem.file).name) for problem in bad.problems) from None
-
-
-def _start_text(task: Task) -> str:
-    """Return the parameters and claims of a task as start.lp states them."""
-    parameters = [f"{one.kind}({one.name})." for one in task.parameters.values()]
-    claims = [f"confidence({claim.fact}, {claim.confidence})." for claim in task.claims]
-    return "\n".join([*parameters, *claims])

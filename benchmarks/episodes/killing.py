@@ -8,7 +8,7 @@
 - the file is readable: all lines that are complete are well-formed
 - at most the step (of a sweep: the runs) under way is lost: what the command had reported as done is in the file
 - no process of the command is left over
-- the same command, with --resume for `run`, ends with the same exit code and leaves the same bytes as a command that
+- the same command, with --resume for `run`, ends with the same exit code and leaves the same lines as a command that
   was not killed, and a sweep repeats no run that the file has (a killed worker: the sweep itself ends so)
 
 The table goes to stdout, progress and faults to stderr. The exit code is 1 when there was a fault.
@@ -30,7 +30,7 @@ from typing import NamedTuple
 
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.launcher import isolated_command
-from utak.simulator.episode.episode import complete_lines, read_episode
+from utak.simulator.episode.episode import read_episode
 from utak.simulator.sweep.results import complete_result_lines
 from utak.simulator.terminal import exits
 
@@ -69,15 +69,7 @@ def run_command(scenario: Path, file: Path, *more: str) -> list[str]:
 
 def sweep_command(scenario: Path, file: Path) -> list[str]:
     """Return the command line of a sweep."""
-    times = str(times_of(file))
-    return isolated_command(
-        "utak.simulator.cli", "sweep", str(scenario), *SWEEP_OPTIONS, "-o", str(file), "--times", times
-    )
-
-
-def times_of(file: Path) -> Path:
-    """Return the file of times beside a file of results: it tells which runs a sweep reported as done."""
-    return file.with_suffix(".times")
+    return isolated_command("utak.simulator.cli", "sweep", str(scenario), *SWEEP_OPTIONS, "-o", str(file))
 
 
 def finish(command: Sequence[str], file: Path) -> Reference:
@@ -156,7 +148,7 @@ def run_faults(scenario: Path, file: Path, reference: Reference, moment: float, 
 def lost_steps(killed: Killed, file: Path) -> Iterator[str]:
     """Yield that steps were lost which a killed run had reported as done. Raises BadInputError for a damaged file."""
     reported = len(re.findall(r"^step \d+: ", killed.errors, re.MULTILINE))
-    recorded = len(read_episode(file).steps) if file.exists() and complete_lines(file) else 0
+    recorded = len(read_episode(file).steps) if file.exists() and b"\n" in file.read_bytes() else 0
     if recorded < reported:
         yield f"{reported} steps were reported, {recorded} are in the file"
 
@@ -164,15 +156,10 @@ def lost_steps(killed: Killed, file: Path) -> Iterator[str]:
 def sweep_faults(scenario: Path, file: Path, reference: Reference, moment: float, draw: random.Random) -> Iterator[str]:
     """Kill a sweep, and yield what is wrong with what is left."""
     killed = kill_after(sweep_command(scenario, file), moment, draw)
-    reported = len(complete_result_lines(times_of(file))) if times_of(file).exists() else 0
-    recorded = max(0, len(complete_result_lines(file)) - 1) if file.exists() else 0
-    if recorded < reported:
-        yield f"{reported} runs were reported, {recorded} are in the file"
+    recorded = complete_result_lines(file) if file.exists() else []
     again = finish(sweep_command(scenario, file), file)
-    repeated = len(complete_result_lines(times_of(file)))
-    planned = reference.contents.count(b"\n") - 1
-    if repeated != planned - recorded:
-        yield f"{repeated} runs were carried out again, {planned - recorded} were missing"
+    if not again.contents.startswith(b"".join(recorded)):
+        yield "runs that were recorded are not kept"
     yield from _differences(again, reference, killed)
 
 
@@ -189,10 +176,16 @@ def _differences(found: Reference, wanted: Reference, killed: Killed) -> Iterato
     """Yield what differs from a command that was not killed."""
     if found.code != wanted.code:
         yield f"the exit code is {found.code}, not {wanted.code}"
-    if found.contents != wanted.contents:
-        yield "the file has other bytes"
+    if _comparable(found.contents) != _comparable(wanted.contents):
+        yield "the file has other contents"
     if killed.orphans:
         yield f"the processes {killed.orphans} are left over"
+
+
+def _comparable(contents: bytes) -> list[bytes]:
+    """Return lines without the seconds of runs; those of a sweep stand in the order in which runs ended."""
+    lines = [re.sub(rb',"seconds":[0-9.]+', b"", line) for line in contents.splitlines()]
+    return sorted(lines) if contents.startswith(b'{"run"') else lines
 
 
 Faults = Callable[[Path, Path, Reference, float, random.Random], Iterator[str]]
@@ -222,8 +215,7 @@ def campaign(kind: str, count: int, seed: int, scenario: Path, folder: Path) -> 
         for fault in found:
             print(f"{kind} {number}, killed after {moment:.3f} s: {fault}", file=sys.stderr, flush=True)
         if not found:
-            for left in (file, times_of(file)):
-                left.unlink(missing_ok=True)
+            file.unlink(missing_ok=True)
         if number % 20 == 19:
             print(f"{kind}: {number + 1} of {count}, {faulty} with faults", file=sys.stderr, flush=True)
     print(f"{kind:8}{count:7} kills from 0 to {LATEST_MOMENT * reference.seconds:.1f} s, {faulty} with faults")

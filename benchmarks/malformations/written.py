@@ -15,7 +15,7 @@ from benchmarks.malformations.outcomes import came_out
 from utak.geometry.kernels.cache import SEAL, SealedFile
 from utak.simulator.episode.output_files import is_episode, is_gif, is_junit, is_svg, write_whole
 from utak.simulator.replay.page import is_page
-from utak.simulator.sweep.results import RowForm, encode_row, open_results
+from utak.simulator.sweep.results import Results
 
 PAGES = (
     b"<!-- a run -->\n<!DOCTYPE html>\n<html><head><title>x</title></head></html>\n",
@@ -24,16 +24,16 @@ PAGES = (
     b'{"utak":"episode","version":1}\n',
 )
 HOSTILE_STARTS = tuple(start * 20_000 for start in (b"<!--", b"<!-- a -->\n", b"<?xml ", b" ", b"<!DOCTYPE "))
-FORM = RowForm({"utak": "sweep", "version": 1}, ("seed", "noise"), [(n, 0.0) for n in range(4)])
-RESULTS = b"".join(map(encode_row, [FORM.header or {}, *({"seed": n, "noise": 0.0, "steps": 9} for n in range(3))]))
-STAMP = (1.0, 2)  # of a kernel's source: its time and size
+ROWS = [{"seed": n, "noise": 0.0, "steps": 9} for n in range(4)]
+RESULTS = b"".join(json.dumps(row).encode() + b"\n" for row in ROWS[:3])
+STAMP = (1.0, 2)  # of a kernel's sources
 
 
 class _Place:
     """Numba's own object for the files of one kernel, as far as ours reads it."""
 
     def __init__(self, folder: Path) -> None:
-        self._cache_path, self._index_name, self._source_stamp = str(folder), "kernel.nbi", STAMP
+        self._cache_path, self._index_name, self._source_stamp = str(folder), "kernel.nbi", None
 
 
 def _page(path: Path, draw: random.Random) -> None:
@@ -53,19 +53,21 @@ def _results(path: Path, draw: random.Random) -> None:
         lines[number] = json.dumps(row).replace('"\\u0000"', draw.choice(HOSTILE_VALUES)).encode()
         raw = b"\n".join(lines) + b"\n"
     path.write_bytes(raw)
-    results = open_results(path, FORM)
-    for seed, noise in FORM.keys:
-        if (seed, noise) not in results.known:
-            results.append({"seed": seed, "noise": noise, "steps": 9})
-    results.finish()
-    if path.read_bytes().count(b"\n") != 1 + len(FORM.keys):  # a carriage return within a line ends none
+    results = Results(path, ("seed", "noise"))
+    for row in ROWS:
+        if (row["seed"], row["noise"]) not in results.known:
+            results.append(row)
+    results.close()
+    again = Results(path, ("seed", "noise"))
+    again.close()
+    if again.known != results.known or len(again.known) < len(ROWS):
         raise AssertionError("results that are not whole")
 
 
 def _kernel(path: Path, draw: random.Random) -> None:
     """Spoil the cache of a kernel; what is read from it is what was saved, or nothing."""
     path.mkdir()
-    files = SealedFile(_Place(path), None)
+    files = SealedFile(_Place(path), None, STAMP)
     good = {"code": list(range(50))}
     files.save("key", good)
     for name in draw.sample(sorted(path.iterdir()), draw.choice([1, 1, 2])):

@@ -19,14 +19,14 @@ from pathlib import Path
 
 from benchmarks.harness.judging import judge_path
 from benchmarks.orders.asked import AskedRun, puzzles, random_tasks
-from benchmarks.orders.row import OrderRow, RunBounds, key_of_run, results_form, row_of_entry
+from benchmarks.orders.row import KEY_NAMES, OrderRow, RunBounds, key_of_run, problem_of, row_of_entry
 from benchmarks.orders.run import row_of_outcome, run_task
 from benchmarks.orders.table import failures, table
 from benchmarks.worlds.several.kinds import SEVERAL_KINDS, several_kinds
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.sweep.executors.processes import run_in_processes
 from utak.simulator.sweep.executors.tasks import Executor, WorkerTask
-from utak.simulator.sweep.results import open_results
+from utak.simulator.sweep.results import Results
 
 DEFAULTS = RunBounds()
 PREPARATION = WorkerTask("utak.simulator.sweep.one_run:prepare", {"carrying": True, "paths": "skeleton"})
@@ -91,8 +91,7 @@ def _run_all(
     with ExitStack() as stack:
         folder = keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-orders-")))
         folder = folder.resolve()
-        results = open_results(output, results_form(output, [key_of_run(one, bounds) for one in asked]))
-        stack.callback(results.finish)
+        results = stack.enter_context(closing(Results(output, KEY_NAMES, check=problem_of)))
         missing = [one for one in asked if key_of_run(one, bounds) not in results.known]
         with closing(executor([run_task(one, bounds, folder) for one in missing])) as ended:
             for number, (index, outcome) in enumerate(ended, 1):

@@ -16,7 +16,7 @@ from utak.geometry.manipulation.legs import Leg
 from utak.geometry.motion.se2 import Translate
 from utak.geometry.screen import Screen
 from utak.kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.simulator.run.embodiment import Embodiment
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.world import Thing, World

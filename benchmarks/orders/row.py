@@ -1,19 +1,14 @@
 """The result of one run, as a frozen value and as a JSON object."""
 
-import json
-from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 from benchmarks.orders.asked import AskedRun
-from utak.simulator.sweep.results import RowForm, RowKey, complete_result_lines
+from utak.simulator.sweep.results import RowKey
 
 RUN_OUT_OF_TIME, RUN_BROKE = "time", "error"  # in place of a verdict
 CAN_BE_DONE, MAY_BE_DONE = "yes", "unknown"
 KEY_NAMES = ("kind", "name", "pull", "max_steps", "seconds")
-RESULTS_HEADER = {"utak": "orders", "version": 1}
 UNMET_WORDS = ("expected ", "should have failed")  # how the judge tells an expectation that is not met
 
 
@@ -98,21 +93,7 @@ def key_of_run(asked: AskedRun, bounds: RunBounds) -> RowKey:
     return asked.kind, asked.name, bounds.pull, bounds.max_steps, bounds.seconds
 
 
-def results_form(path: Path | None, keys: list[RowKey]) -> RowForm:
-    """Return the form of a file of results: it keeps the rows that it has, and takes those with the given keys, too."""
-    known = list(_keys_in(path)) if path is not None and path.is_file() else []
-    return RowForm(RESULTS_HEADER, KEY_NAMES, list(dict.fromkeys([*known, *keys])), _problem_of)
-
-
-def _keys_in(path: Path) -> Iterator[RowKey]:
-    """Yield the keys of the rows of a file; lines that are no rows are reported when the file is opened."""
-    for line in complete_result_lines(path)[1:]:
-        with suppress(ValueError, TypeError):
-            row = row_of_entry(json.loads(line))
-            yield tuple(getattr(row, name) for name in KEY_NAMES)
-
-
-def _problem_of(entry: dict[str, Any]) -> str:
+def problem_of(entry: dict[str, Any]) -> str:
     """Return what is wrong with the JSON object of a row; "" for nothing."""
     try:
         row_of_entry(entry)

@@ -29,7 +29,7 @@ from benchmarks.orders.search import search
 from benchmarks.worlds.scenes import write
 from benchmarks.worlds.several.kinds import several_world
 from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.simulator.episode.episode import EpisodeLog
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Result, RobotMaker, Session

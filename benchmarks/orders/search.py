@@ -31,7 +31,7 @@ from utak.geometry.manipulation.legs import Leg
 from utak.geometry.manipulation.plan_carrying import plan_carrying
 from utak.geometry.motion.se2 import Pose, Translate
 from utak.geometry.raster.components import components
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 
 FOUND, EXHAUSTED, SEARCH_LIMIT = "found", "exhausted", "limit"
 MAX_DETOURS = 3  # carries to places that nothing wants, at most; a convention, for time

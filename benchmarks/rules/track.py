@@ -17,7 +17,7 @@ WALL_AT = {
     "push_two_corners": 0.0,
     "push_exchange_places": 0.0,
     "go_next_room_none": 0.0,
-    "push_square_two_corners": 0.0,
+    "push_square_narrow_door": 0.0,
 }
 MOVED = 0.05  # squares by which a thing that lies elsewhere was moved
 

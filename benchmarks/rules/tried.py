@@ -28,7 +28,7 @@ class Tried:
     said: str = ""
 
 
-GO, TWO_DOORS, SQUARE, EXCHANGE, BOTH_CORNERS, SWAPPED_PLACES, WITHOUT_DOOR, ONE_IN_TWO = WALL_AT
+GO, TWO_DOORS, SQUARE, EXCHANGE, BOTH_CORNERS, SWAPPED_PLACES, WITHOUT_DOOR, NARROW_DOOR = WALL_AT
 WALKS, CARRIES, BRING_TWO = (GO, TWO_DOORS), (SQUARE, EXCHANGE), (EXCHANGE, BOTH_CORNERS)
 PLACED_AT_GOAL = "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."
 STUCK_STEPS = ("pull", "make_way", "try", "feel", "bare")  # what may settle that something seems impossible
@@ -87,7 +87,7 @@ TRIED_RULES: dict[str, Tried] = {
         "prices",
         "price(feel(S), 1) :- stuck(S, impossible).",
         lambda t: t.first_planned(STUCK_STEPS) == "feel",
-        (WITHOUT_DOOR, ONE_IN_TWO),
+        (WITHOUT_DOOR, NARROW_DOOR),
         said="cannot be attained",
     ),
     "apart": Tried(
@@ -112,7 +112,7 @@ TRIED_RULES: dict[str, Tried] = {
     "red_are_squares": Tried(
         "meanings",
         "has(N, shape, square, 99) :- has(N, colour, r, _). has(N, shape, square, 1) :- has(N, colour, K, _), K != r.",
-        lambda t: "g1" not in t.moved(),
+        lambda t: not t.ends_east("g1"),  # it may be moved to measure it: it might be y
         CARRIES,
         said="nothing seen so far is y",
     ),
@@ -146,6 +146,45 @@ TRIED_RULES: dict[str, Tried] = {
         lambda t: not t.passes(),
         (GO, SQUARE),
     ),
+    "seen_before_carried": Tried(
+        "world facts",
+        ":- brought(X, _, _, _), X != utak, unseen(R, N), N > 100.",
+        lambda t: not t.ends_east("g1"),  # from the door the next room is seen to have more
+        (SQUARE,),
+    ),
+    "stays_near": Tried(
+        "world facts",
+        "near(X) :- offset(X, E, N), |E| < 800, |N| < 800. :- brought(X, _, _, _), thing(X), not near(X).",
+        lambda t: not t.ends_east("g1"),
+        (SQUARE,),
+    ),
+    "empty_hands_through_doors": Tried(
+        "world facts",
+        ":- held(X), occurs(go(D), T).",
+        lambda t: not any(t.passes(name) for name in t.things),
+        (SQUARE,),
+    ),
+    "felt_before_moved": Tried(
+        "world facts",
+        ":- brought(X, _, _, _), thing(X), not colour(X, _, _).",
+        lambda t: not t.moved(),  # no thing is felt without being brought
+        (BOTH_CORNERS,),
+    ),
+    "sure_doors": Tried(
+        "world facts", ":- occurs(go(D), T), door(D, C), C < 101.", lambda t: not t.passes(), (GO, SQUARE)
+    ),
+    "y_early": Tried(
+        "aggregates",
+        "#minimize { T@2, X : brought(X, _, _, T), meaning(y, X) }.",
+        lambda t: t.moved()[:1] == ["r1"],
+        BRING_TWO,
+    ),
+    "ends_at_home": Tried(
+        "end states",
+        ":- horizon(H), not robot_in(r1, H).",
+        lambda t: (t.robot[-1][0] < t.wall) == (t.robot[0][0] < t.wall),
+        (GO, SQUARE),
+    ),
     "all_seen": Tried(
         "aggregates", ":- #sum { N, R : unseen(R, N) } > 100000.", lambda t: bool(t.passes()), (GO, SQUARE)
     ),
@@ -155,5 +194,7 @@ TRIED_RULES: dict[str, Tried] = {
     "a_step_as_a_fact": Tried("refused", "occurs(go(d1), 0).", refused="says what there is"),
     "an_unknown_step": Tried("refused", ":- occurs(jump(X), T).", refused="unknown step jump/1"),
     "a_misspelt_word": Tried("refused", ":- widht(D, W), occurs(go(D), T).", refused="did you mean width?"),
+    "a_parameter_as_a_thing": Tried("refused", ":- occurs(carry(x, _), T).", refused="write meaning(x, X)"),
+    "a_word_as_a_colour": Tried("refused", ":- brought(X, _, _, _), colour(X, green, _).", refused="lower-case letter"),
     "a_believed_room": Tried("refused", "in(X, r1) :- held(X).", refused="this changes nothing"),
 }

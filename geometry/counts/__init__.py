@@ -2,6 +2,7 @@
 
 Modules, in reading order:
 
+retina  The plan of the retina: its fields, and the gray levels of counts.
 settle  Squares that the counts settle as free or occupied.
 contradictions  Squares and fields of several observations that contradict each other.
 uncover  Squares that an object covers, taken out of the fields of an observation.

@@ -100,7 +100,7 @@ def pictures(
     count = np.ascontiguousarray((images[:, raster.where] * counts.weight).sum(2, dtype=np.int32))
     neighbours = np.zeros((len(first), len(raster.squares)), np.int32)
     flipped = np.zeros(2 * MAX_MOVED_LENGTH + 2, np.int32)
-    inverse_temperatures = np.linspace(hot, FINAL_INVERSE_TEMPERATURE, sweeps, dtype=np.float32)
+    inverse_temperatures = np.linspace(hot, FINAL_INVERSE_TEMPERATURE, sweeps)
     sample_all(raster, _flip_costs(), _thresholds(), images, neighbours, count, flipped, inverse_temperatures, seed)
     return images_framed[:, 1:-1, 1:-1]
 
@@ -161,8 +161,8 @@ def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns:
 
 
 @cache
-def _flip_costs() -> NDArray[np.float32]:
-    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2) float32, flat."""
+def _flip_costs() -> NDArray[np.float64]:
+    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2) float64, flat."""
     shown_corners, around, was = np.ogrid[:16, :256, :2]
     change = np.zeros((16, 256, 2))
     for point in range(4):
@@ -173,7 +173,7 @@ def _flip_costs() -> NDArray[np.float32]:
         change += (shown_corners >> point & 1) * (
             _corner_cost(1 - was, horizontal, vertical, diagonal) - _corner_cost(was, horizontal, vertical, diagonal)
         )
-    return change.astype(np.float32).ravel()
+    return change.ravel()
 
 
 def _corner_cost(
@@ -187,10 +187,11 @@ def _corner_cost(
 
 
 @cache
-def _thresholds() -> NDArray[np.float32]:
-    """Return equally likely thresholds (THRESHOLD_COUNT,) float32."""
+def _thresholds() -> NDArray[np.float64]:
+    """Return equally likely thresholds (THRESHOLD_COUNT,) float64."""
     # Rises of the cost allowed at inverse temperature 1.
-    return (-np.log((np.arange(THRESHOLD_COUNT) + 0.5) / THRESHOLD_COUNT)).astype(np.float32)
+    result: NDArray[np.float64] = -np.log((np.arange(THRESHOLD_COUNT) + 0.5) / THRESHOLD_COUNT)
+    return result
 
 
 @bare
@@ -220,7 +221,7 @@ def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, i
         count_error += max(limits[f, 0] - counts[f], counts[f] - limits[f, 1], 0)
     for k in range(squares.shape[0]):
         for n in range(8):
-            neighbours[k] |= image[squares[k] + around[n]] << n
+            neighbours[k] |= (image[squares[k] + around[n]] == 1) << n
     for sweep in range(inverse_temperatures.shape[0]):
         temperature = 1 / inverse_temperatures[sweep]
         for k in range(squares.shape[0]):

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from utak.geometry.kernels.arrays import Ints, Longs
-from utak.geometry.kernels.jit import compiled
+from utak.geometry.kernels.jit import bare, compiled
 
 OPEN, FREE, OCCUPIED = -1, 0, 1  # states of a square: not settled, settled as free, settled as occupied
 MAX_ROUNDS = 20  # rounds of both rules; convention, a bound on time
@@ -26,27 +26,27 @@ SquareStates = NDArray[np.int8]
 Numbers = NDArray[np.int16]
 
 
-@compiled
 def remaining_counts(
     state: SquareStates, where: Ints, weight: Numbers, low: Numbers, high: Numbers
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out."""
-    fields, entries = where.shape
-    open_ = np.zeros((fields, entries), np.bool_)
-    left = np.zeros((3, fields), np.int64)
-    for i in range(fields):
-        occupied = 0
-        for k in range(entries):
-            if weight[i, k] > 0:
-                at = state[where[i, k]]
-                if at == OPEN:
-                    open_[i, k] = True
-                    left[0, i] += weight[i, k]
-                elif at == OCCUPIED:
-                    occupied += weight[i, k]
-        left[1, i] = max(low[i] - occupied, 0)
-        left[2, i] = min(high[i] - occupied, left[0, i])
-    return open_, left[0], left[1], left[2]
+    at = state[where]
+    open_ = (at == OPEN) & (weight > 0)
+    left, occupied = (np.where(chosen, weight, 0).sum(axis=1) for chosen in (open_, at == OCCUPIED))
+    return open_, left, np.maximum(low - occupied, 0), np.minimum(high - occupied, left)
+
+
+@bare
+def _weights(state: SquareStates, where: Ints, weight: Numbers, i: int) -> tuple[int, int]:
+    """Return how often field i samples squares that are settled as occupied, and open ones."""
+    occupied, open_weight = 0, 0
+    for k in range(where.shape[1]):
+        at = state[where[i, k]]
+        if at == OCCUPIED:
+            occupied += weight[i, k]
+        elif at == OPEN:
+            open_weight += weight[i, k]
+    return occupied, open_weight
 
 
 @compiled
@@ -56,13 +56,7 @@ def misfits(
     """Return how many fields cannot have their counts if all that is settled is right; mark them in `wrong`."""
     found = 0
     for i in range(where.shape[0]):
-        occupied, possible = 0, 0
-        for k in range(where.shape[1]):
-            at = state[where[i, k]]
-            if at == OCCUPIED:
-                occupied += weight[i, k]
-            elif at == OPEN:
-                possible += weight[i, k]
+        occupied, possible = _weights(state, where, weight, i)
         wrong[i] = occupied > high[i] or occupied + possible < low[i]
         found += wrong[i]
     return found
@@ -113,13 +107,7 @@ def _settle_by_single_fields(
     fields, entries = where.shape
     found = False
     for i in range(fields):
-        occupied, open_weight = 0, 0
-        for k in range(entries):
-            at = state[where[i, k]]
-            if at == OCCUPIED:
-                occupied += weight[i, k]
-            elif at == OPEN:
-                open_weight += weight[i, k]
+        occupied, open_weight = _weights(state, where, weight, i)
         low_left, high_left = max(low[i] - occupied, 0), min(high[i] - occupied, open_weight)
         for k in range(entries):
             verdict = OPEN
@@ -155,22 +143,14 @@ def _settle_by_pairs(
     impression: int,
 ) -> bool:
     """Settle what two fields do not share, from the difference of their counts."""
-    # Return whether any square was settled.
     fields, entries = where.shape
-    open_weight, low_left, high_left = (
-        np.zeros(fields, np.int64),
-        np.zeros(fields, np.int64),
-        np.zeros(fields, np.int64),
-    )
+    open_weight, low_left, high_left = np.zeros((3, fields), np.int64)
     total = 0
     for i in range(fields):
-        occupied, heaviest = 0, 0
+        occupied, open_weight[i] = _weights(state, where, weight, i)
+        heaviest = 0
         for k in range(entries):
-            at = state[where[i, k]]
-            if at == OCCUPIED:
-                occupied += weight[i, k]
-            elif at == OPEN and weight[i, k] > 0:
-                open_weight[i] += weight[i, k]
+            if state[where[i, k]] == OPEN:
                 heaviest = max(heaviest, weight[i, k])
         low_left[i], high_left[i] = max(low[i] - occupied, 0), min(high[i] - occupied, open_weight[i])
         if heaviest != 1:

@@ -192,7 +192,6 @@ def _link_if_face(tree: CellTree, a: int, b: int) -> None:
 @bare
 def next_link_to_leaf(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> int:
     """Return the next link of a cell that leads to a leaf, after link `at`, or its first if `at` is -1."""
-    # -1 at the end.
     while True:
         found = head[cell] if at < 0 else link[at, 1]
         if found < 0 or child[link[found, 0]] < 0:

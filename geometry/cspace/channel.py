@@ -19,7 +19,7 @@ import numpy.typing as npt
 from utak.geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
 from utak.geometry.cspace.search_tree import SearchTree, add_cell, cut_off, new_search_tree, set_parent, sort_cells
 from utak.geometry.kernels.arrays import Floats, Ints
-from utak.geometry.kernels.bounded_heap import pop, push
+from utak.geometry.kernels.heap import pop, push
 from utak.geometry.kernels.jit import bare
 from utak.geometry.motion.cell_clearance import (
     CELL_BLOCKED,
@@ -58,7 +58,7 @@ class ChannelSearch(NamedTuple):
     state: npt.NDArray[np.int8]
     # (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0
     seen: npt.NDArray[np.int64]
-    key: Floats  # the heap, see bounded_heap: keys, cells, and (number on it, number dropped)
+    key: Floats  # the heap, see kernels.heap: keys, cells, and (number on it, number dropped when it was full)
     item: Ints
     size: npt.NDArray[np.int64]
     # (capacity,) the cells of the last channel, the start's first; how many is what find_channel returned
@@ -105,9 +105,10 @@ def find_channel(
         return 0
     if search.state[start] == NODE_NEW:
         search.cost[start], search.state[start] = 0.0, NODE_QUEUED
-        push(search.key, search.item, search.size, 0.0, start)
+        _enqueue(search, 0.0, start)
     while search.size[0] > 0:
-        key, cell = pop(search.key, search.item, search.size)
+        key = search.key[0]
+        cell, search.size[0] = pop(search.key, search.item, search.size[0])
         if tree.child[cell] >= 0 or search.state[cell] == NODE_SETTLED or search.state[cell] == NODE_NEW:
             continue
         postponed = search.state[cell] == NODE_POSTPONED
@@ -123,8 +124,17 @@ def find_channel(
         _relax_neighbours(tree, search, body.radius, cell, through_given_up)
         if goal_kind == CELL_UNDECIDED and (through_given_up or is_splittable(tree, cell, body)):
             search.state[cell] = NODE_POSTPONED
-            push(search.key, search.item, search.size, key + 2.0 * body.radius, cell)
+            _enqueue(search, key + 2.0 * body.radius, cell)
     return 0
+
+
+@bare
+def _enqueue(search: ChannelSearch, key: float, cell: int) -> None:
+    """Put a cell on the heap, or count it as dropped if the heap is full."""
+    if search.size[0] >= len(search.key):
+        search.size[1] += 1
+    else:
+        search.size[0] = push(search.key, search.item, search.size[0], key, cell)
 
 
 @bare
@@ -139,7 +149,6 @@ def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: i
 @bare
 def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: ChannelSearch) -> None:
     """Cut off what hung on cells that were split or given up."""
-    # Attach it and the new cells again. `search` is changed.
     unattached = 0
     for k in range(tree.changes[0]):
         root = tree.changed[k]
@@ -179,7 +188,7 @@ def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> 
     if by >= 0:
         search.cost[cell], search.state[cell] = best, NODE_QUEUED
         set_parent(search.paths, cell, by)
-        push(search.key, search.item, search.size, best + search.cost_to_go[cell], cell)
+        _enqueue(search, best + search.cost_to_go[cell], cell)
 
 
 @bare
@@ -194,7 +203,7 @@ def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell
             if search.state[other] == NODE_NEW or cost < search.cost[other]:
                 search.cost[other], search.state[other] = cost, NODE_QUEUED
                 set_parent(search.paths, other, cell)
-                push(search.key, search.item, search.size, cost + search.cost_to_go[other], other)
+                _enqueue(search, cost + search.cost_to_go[other], other)
         link = next_link_to_leaf(child, head, links, cell, link)
 
 

@@ -29,7 +29,6 @@ def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
 
 def disc_room(obstacles: Any, radius: float, bounds: Floats, start: XY) -> Any:
     """Return where the centre of a disc can be at most when it comes from a place: shapely geometry."""
-    # Empty for unknown.
     room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius - DISC_SHRINKAGE, outer=False))
     parts = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= DISC_SHRINKAGE]
     return shapely.MultiPolygon(parts)

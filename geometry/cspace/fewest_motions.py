@@ -89,7 +89,6 @@ def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> No
 @compiled
 def _cheapest_order(context: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
     """Return the indices of the poses on the cheapest path from the first to the last; empty if there is none."""
-    # (k,) int64, in order.
     count = len(poses)
     cost, parent = np.full(count, np.inf), np.full(count, -1, np.int64)
     done = np.zeros(count, np.bool_)

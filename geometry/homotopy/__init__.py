@@ -7,6 +7,6 @@ portals  The word of a polyline; words joined and reduced; crossing numbers of a
 funnel  String pulling: the shortest path through a word of portals.
 landmarks  What routing precomputes on a pathgraph: words and tight lengths of chains, distances from landmark nodes.
 
-Public names: `Strips`, `find_strips`, `word_of_line`, `join_words`, `crossings_of`, `tighten_word`, `Landmarks`,
+Public names: `Strips`, `find_strips`, `word_of_line`, `crossings_of`, `tighten_word`, `Landmarks`,
 `compute_landmarks`, `Anchor`.
 """

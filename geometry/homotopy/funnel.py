@@ -38,14 +38,11 @@ def new_funnel(portals: int) -> Funnel:
 
 @bare
 def tighten_word(
-    lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, buffers: Funnel, out: Floats
+    lefts: Ints, rights: Ints, lines: Ints, word: Ints, size: int, ends: Ends, buffers: Funnel, out: Floats
 ) -> int:
     """Write the corners of the shortest path through a word's portals to `out`, and return their number."""
-    # A body moves on the lines between the centres of its squares and in the meshes of four, so each portal counts
-    # twice: where the path leaves the lower line of centres and where it meets the upper one.
     xs, ys, via = buffers.x, buffers.y, buffers.via
     xs[0], ys[0] = ends[0], ends[1]
-    inset, times = (0.5, 2) if body else (0.0, 1)
     used, kept, low, high = 1, 0, 0, 0
     for k in range(size):
         symbol, after = word[k], word[k + 1] if k + 1 < size else 0
@@ -55,14 +52,9 @@ def tighten_word(
         if straight and west <= low and east >= high and west <= lefts[other] and east >= rights[other]:
             continue  # whatever goes straight from the portal before to the one behind goes through this one
         kept, low, high = symbol, west, east
-        left, right = west + inset, east + 1.0 - inset
-        y = lines[portal] + 1.0
-        if symbol < 0:
-            left, right = right, left
-        for n in range(times):
-            ys[used] = ys[used + 1] = y + inset * (2 * n - 1) * (1 if symbol > 0 else -1)
-            xs[used], xs[used + 1] = left, right
-            used += 2
+        ys[used] = ys[used + 1] = lines[portal] + 1.0
+        xs[used], xs[used + 1] = (west, east + 1.0) if symbol > 0 else (east + 1.0, west)
+        used += 2
     xs[used], ys[used] = ends[2], ends[3]
     pull_tight(xs, ys, via, buffers.queue, used)
     return write_corners(xs, ys, via, used, out)

@@ -6,7 +6,7 @@ import numpy as np
 
 from utak.geometry.homotopy.funnel import Funnel, measure_line, new_funnel, tighten_word
 from utak.geometry.homotopy.strips import Strips, append_symbol, symbol_between
-from utak.geometry.kernels.arrays import Floats, Ints, SquaredDistances
+from utak.geometry.kernels.arrays import Floats, Ints
 from utak.geometry.kernels.heap import pop, push
 from utak.geometry.kernels.jit import bare
 from utak.geometry.skeleton.chains import Chains
@@ -45,9 +45,8 @@ class Anchor(NamedTuple):
     cell: int  # the index of the cell in the flat padded screen, (row + 1) * width + column + 1
 
 
-def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, body: bool) -> Landmarks:
+def compute_landmarks(width: int, chains: Chains, strips: Strips) -> Landmarks:
     """Return what routing precomputes on a pathgraph: words, lengths and arcs of its chains, and landmark distances."""
-    width = square.shape[1]
     symbol = np.zeros(chains.cells.shape[0], np.int32)
     length = np.empty(chains.ends.shape[0])
     longest = int(np.diff(chains.start).max(initial=1))
@@ -55,7 +54,7 @@ def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, 
     line, funnel = np.empty((4 * longest + 8, 2)), new_funnel(2 * longest)
     find_chain_symbols(chains.start, chains.cells, strips.row, strips.up, strips.left, width, symbol)
     portals = strips.left, strips.right, strips.line
-    measure_chains(chains.start, chains.cells, symbol, *portals, body, width, length, words, spelt, line, funnel)
+    measure_chains(chains.start, chains.cells, symbol, *portals, width, length, words, spelt, line, funnel)
     place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
     shape = len(chains.node), 4
     head, arc, step = np.full(shape, -1, np.int32), np.zeros(shape, np.int32), np.zeros(shape)
@@ -81,7 +80,6 @@ def measure_chains(
     left: Ints,
     right: Ints,
     line: Ints,
-    body: bool,
     width: int,
     length: Floats,
     words: Ints,
@@ -97,7 +95,7 @@ def measure_chains(
             size = append_symbol(word, size, 0 + symbol[k])
         a, b = cells[first], cells[last]
         ends = (a % width - 0.5, a // width - 0.5, b % width - 0.5, b // width - 0.5)
-        corners = tighten_word(left, right, line, body, word, size, ends, funnel, out)
+        corners = tighten_word(left, right, line, word, size, ends, funnel, out)
         length[chain] = measure_line(out, corners)
         spelt[chain + 1] = spelt[chain] + size
 

@@ -1,11 +1,11 @@
-"""Words of portals: the word of a polyline through free space, words joined, and their crossing numbers."""
+"""Words of portals: the word of a polyline through free space, and the crossing numbers of a word."""
 
 from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from utak.geometry.homotopy.strips import Strips, append_symbol, strip_at, symbol_between
+from utak.geometry.homotopy.strips import Strips, strip_at
 from utak.geometry.kernels.arrays import XY, Ints
 
 WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the wall corner that it touches
@@ -13,7 +13,6 @@ WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the
 
 def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
     """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order."""
-    # It is empty when the line stays in one strip.
     line = [(float(x), float(y)) for x, y in points]
     strip, row = first_strip(strips, line[0])
     symbols: list[int] = []
@@ -33,12 +32,6 @@ def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
     if last:
         symbols = symbols[:-1] if symbols and symbols[-1] == -last else [*symbols, last]
     return np.array(symbols, np.int32)
-
-
-def word_of_cells(strips: Strips, cells: list[int], width: int) -> Ints:
-    """Return the signed portals crossed from cell to cell, (n,) int32, not reduced: inverses may follow each other."""
-    symbols = [symbol_between(strips.row, strips.up, strips.left, a, b, width) for a, b in pairwise(cells)]
-    return np.array([s for s in symbols if s], np.int32)
 
 
 def first_strip(strips: Strips, point: XY) -> tuple[int, int]:
@@ -96,16 +89,6 @@ def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
     if gain <= 0.0:
         raise ValueError(f"the line leaves free space at {p}")
     return symbol
-
-
-def join_words(*words: Ints) -> Ints:
-    """Return the words one after the other, as one reduced word: (n,) int32 of signed portals, a new array."""
-    whole = np.empty(sum(len(word) for word in words) + 1, np.int32)
-    size = 0
-    for word in words:
-        for symbol in word.tolist():
-            size = append_symbol(whole, size, symbol)
-    return whole[:size]
 
 
 def crossings_of(strips: Strips, word: Ints) -> tuple[int, ...]:

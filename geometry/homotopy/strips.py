@@ -38,12 +38,12 @@ class Strips(NamedTuple):
     exit: Ints  # (n,) the signed portal by which every path out of a dead-end strip leaves it; 0 for all other strips
 
 
-def find_strips(square: SquaredDistances, level: int) -> Strips:
-    """Return the strips and portals of the cells whose squared clearance is at least a level."""
+def find_strips(square: SquaredDistances) -> Strips:
+    """Return the strips and portals of the free cells."""
     row = np.zeros(square.shape[0] - 1, np.int32)
-    count = count_strips(square, level, row)
+    count = count_strips(square, row)
     low, high = np.empty(count, np.int32), np.empty(count, np.int32)
-    fill_strips(square, level, low, high)
+    fill_strips(square, low, high)
     up, down = np.zeros(count + 1, np.int32), np.zeros(count + 1, np.int32)
     left, right, lower, upper, line = (np.empty(2 * count, np.int32) for _ in range(5))
     portals = fill_portals(row, low, high, up, down, left, right, lower, upper, line)
@@ -69,26 +69,26 @@ def copy_first(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
 
 
 @bare
-def count_strips(square: SquaredDistances, level: int, row: Ints) -> int:
+def count_strips(square: SquaredDistances, row: Ints) -> int:
     """Return the number of strips; fill `row` with the number of strips up to the end of each row."""
     total = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
         for j in range(1, here.shape[0]):
-            total += (here[j] < level) & (here[j - 1] >= level)
+            total += (here[j] == 0) & (here[j - 1] > 0)
         row[i] = total
     return total
 
 
 @bare
-def fill_strips(square: SquaredDistances, level: int, low: Ints, high: Ints) -> None:
+def fill_strips(square: SquaredDistances, low: Ints, high: Ints) -> None:
     """Fill the first and last columns of all strips."""
     strip = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
         for j in range(1, here.shape[0]):
-            if (here[j] >= level) != (here[j - 1] >= level):
-                if here[j] >= level:
+            if (here[j] > 0) != (here[j - 1] > 0):
+                if here[j] > 0:
                     low[strip] = j - 1
                 else:
                     high[strip] = j - 2

@@ -2,8 +2,8 @@
 
 Modules, in reading order:
 
-movingai  Maps and scenario files of the Moving AI benchmarks (Sturtevant 2012).
+movingai  Maps of the Moving AI benchmarks (Sturtevant 2012).
 svg  A screen drawn as SVG, with skeleton, pathgraph and routes.
 
-Public names: `read_map`, `parse_map`, `MapError`, `read_trips`, `Trip`, `draw`.
+Public names: `parse_map`, `MapError`, `draw`.
 """

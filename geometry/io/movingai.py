@@ -1,4 +1,4 @@
-"""Maps and scenario files of the Moving AI benchmarks (Sturtevant 2012).
+"""Maps of the Moving AI benchmarks (Sturtevant 2012).
 
     file = head "map" row { row } blank lines
     head = { "type" word | "height" number | "width" number }     each once, a line each, in any order
@@ -10,8 +10,6 @@ have row 0 in the south, so rows are reversed.
 
 import re
 from codecs import BOM_UTF8
-from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -31,36 +29,6 @@ class MapError(ValueError):
     def __init__(self, line: int, column: int, what: str, end: int | None = None) -> None:
         self.line, self.column, self.end, self.what = line, column, max(column, end or column), what
         super().__init__(f"{line}:{column}-{self.end}: error: {what}")
-
-
-class Trip(NamedTuple):
-    """One problem of a scenario file, in squares (row 0 in the south, (0, 0) at its south-west corner)."""
-
-    start: tuple[float, float]  # (x, y), the centre of the first square
-    goal: tuple[float, float]  # (x, y), the centre of the last square
-    # The length in squares of the optimal path over eight directions, as the file says; a diagonal step counts sqrt(2)
-    octile: float
-
-
-def read_map(path: str | Path) -> Bools:
-    """Return the free squares of a map file, (rows, columns) bool, row 0 in the south (the last line of the file).
-
-    The letters ``.``, ``G`` and ``S`` are free (True), ``@``, ``O``, ``T`` and ``W`` are not.
-
-    Parameters
-    ----------
-    path : the file, in the format of the Moving AI benchmarks (lines `type`, `height N`, `width N`, then `map` and the
-        rows of text).
-
-    Raises
-    ------
-    ValueError : when the file is no such map; the message has file and line.
-    OSError : when it cannot be read.
-    """
-    try:
-        return parse_map(Path(path).read_bytes())
-    except MapError as error:
-        raise ValueError(f"{path}:{error.line}: error: {error.what}") from None
 
 
 def parse_map(raw: bytes) -> Bools:
@@ -137,31 +105,3 @@ def _check_row(number: int, row: str, width: int) -> None:
             raise MapError(number, column, f"unknown square {square!r}; known are {' '.join(MAP_LETTERS)}")
     if len(row) != width:
         raise MapError(number, min(len(row), width) + 1, f"the row has {len(row)} squares, not {width}", len(row))
-
-
-def read_trips(path: str | Path) -> list[Trip]:
-    """Return the problems of a scenario file, in order; lines that do not have nine words are skipped.
-
-    A Trip holds start and goal (x, y), centres of squares, in squares with (0, 0) at the screen's south-west corner,
-    and the length of the optimal path over eight directions, in squares. [] when no line has nine words.
-
-    The file counts rows from the north; starts and goals are turned to the screen's frame, row 0 in the south.
-
-    Parameters
-    ----------
-    path : the file, in the format of the Moving AI benchmarks: words 4 to 9 of a line are the height, column and row of
-        the start, column and row of the goal, and the length.
-
-    Raises
-    ------
-    ValueError : when a line of nine words has no numbers where they belong, or the file is no ASCII text.
-    OSError : when it cannot be read.
-    """
-    trips = []
-    for line in Path(path).read_text(encoding="ascii").splitlines():
-        words = line.split()
-        if len(words) == 9:
-            height, a, b, c, d = (int(word) for word in words[3:8])
-            start, goal = (a + 0.5, height - b - 0.5), (c + 0.5, height - d - 0.5)
-            trips.append(Trip(start, goal, float(words[8])))
-    return trips

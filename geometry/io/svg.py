@@ -1,12 +1,11 @@
 """A screen drawn as SVG: squares, skeleton, pathgraph and routes, with a legend, a scale and the ends of the routes."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from math import floor, isnan, log10
 
 import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools, Floats
-from utak.geometry.passages.necks import Passage
 from utak.geometry.raster.runs import runs_along_rows
 from utak.geometry.routes.route import Route
 from utak.geometry.screen import Screen
@@ -29,33 +28,23 @@ def place(point: XY) -> str:
 
 def draw(
     screen: Screen,
-    routes: Iterable[Route] = (),
-    passages: Iterable[Passage] = (),
-    pathgraph: bool = True,
-    scale: float | None = None,
-    ends: tuple[XY, XY] | None = None,
+    routes: Sequence[Route],
+    ends: tuple[XY, XY],
     words: Callable[[XY], str] = place,
 ) -> str:
     """Return an SVG document, as text, that shows a screen, north up."""
-    routes = list(routes)
     rows, columns = screen.shape
-    scale = scale or min(MAX_SCALE, PICTURE_SIZE / max(rows, columns))
-    if ends is None and routes:
-        (ax, ay), (bx, by) = routes[0].points[[0, -1]].tolist()
-        ends = (ax, ay), (bx, by)
-    listed = _legend(routes, ends, words, pathgraph)
+    scale = min(MAX_SCALE, PICTURE_SIZE / max(rows, columns))
+    listed = _legend(routes, ends, words)
     bar = columns * scale * 0.25
     height = max(rows * scale + LEGEND_ROW_HEIGHT + SCALE_BAR_GAP, len(listed) * LEGEND_ROW_HEIGHT) + 2 * PICTURE_MARGIN
     width = max(columns * scale, bar + 90) + LEGEND_WIDTH + 3 * PICTURE_MARGIN
     parts = _squares(screen, width, height, scale)
-    if pathgraph:
-        parts += draw_pathgraph(screen, 1.0 / scale)
-    parts += [_passage_line(passage, scale) for passage in passages]
-    for number, route in _below_first(routes):
+    parts += draw_pathgraph(screen, 1.0 / scale)
+    for number, route in reversed(list(enumerate(routes))):  # the first one last, on top
         parts.append(_line(number, route, route_line_width(number, len(routes), scale)))
     parts.append("</g>")
-    if ends is not None:
-        parts += _marks([_pixel(end, rows, scale) for end in ends])
+    parts += _marks([_pixel(end, rows, scale) for end in ends])
     parts += _scale_bar(bar / scale, scale, PICTURE_MARGIN, PICTURE_MARGIN + rows * scale + LEGEND_ROW_HEIGHT)
     left = width - LEGEND_WIDTH - PICTURE_MARGIN
     parts += [row(left, PICTURE_MARGIN + LEGEND_ROW_HEIGHT * (number + 0.7)) for number, row in enumerate(listed)]
@@ -77,22 +66,10 @@ def _squares(screen: Screen, width: float, height: float, scale: float) -> list[
     ]
 
 
-def _passage_line(passage: Passage, scale: float) -> str:
-    """Return the SVG of a passage, in squares: a line from its left to its right end, 3 pixels wide at `scale`."""
-    (ax, ay), (bx, by) = passage.a, passage.b
-    style = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
-    return f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>'
-
-
 def route_line_width(number: int, count: int, scale: float) -> float:
     """Return the width at which a route is drawn, in squares: at most a quarter, as long as that can be seen."""
     thinnest = min(3.0, max(1.5, 0.125 * scale)) / scale
     return thinnest * (1.0 + number / max(1, count - 1))
-
-
-def _below_first(routes: Sequence[Route]) -> list[tuple[int, Route]]:
-    """Return the routes with their numbers, (number from 0, route), in reverse order: the first one last, on top."""
-    return list(reversed(list(enumerate(routes))))
 
 
 def _line_style(number: int, width: float) -> str:
@@ -111,7 +88,6 @@ def _route_text(number: int, route: Route) -> str:
 
 def _line(number: int, route: Route, width: float) -> str:
     """Return the SVG of a route, in squares (y to the north)."""
-    # A line with a title that gives its length and clearance.
     points = "L".join(f"{x:g} {y:g}" for x, y in route.points.tolist())
     title = f"<title>route {_route_text(number, route)}</title>"
     return f'<path class="route" d="M{points}" {_line_style(number, width)}>{title}</path>'
@@ -146,14 +122,10 @@ def _scale_bar(longest: float, scale: float, x: float, y: float) -> list[str]:
 LegendRow = Callable[[float, float], str]
 
 
-def _legend(
-    routes: Sequence[Route], ends: tuple[XY, XY] | None, words: Callable[[XY], str], pathgraph: bool
-) -> list[LegendRow]:
+def _legend(routes: Sequence[Route], ends: tuple[XY, XY], words: Callable[[XY], str]) -> list[LegendRow]:
     """Return the rows of the legend, from the top: functions that give a row's SVG at a place (x, y) in pixels."""
-    rows: list[LegendRow] = []
-    if ends is not None:
-        ring, diamond = _marks([(0.0, 0.0), (0.0, 0.0)])
-        rows += [_legend_row(ring, f"from {words(ends[0])}"), _legend_row(diamond, f"to {words(ends[1])}")]
+    ring, diamond = _marks([(0.0, 0.0), (0.0, 0.0)])
+    rows = [_legend_row(ring, f"from {words(ends[0])}"), _legend_row(diamond, f"to {words(ends[1])}")]
     for number, route in list(enumerate(routes))[:MAX_LISTED_ROUTES]:
         rows.append(
             _legend_row(f'<path d="M-12 0h24" fill="none" {_line_style(number, 3.0)}/>', _route_text(number, route))
@@ -162,15 +134,13 @@ def _legend(
         rows.append(_legend_row("", f"... and {len(routes) - MAX_LISTED_ROUTES} more"))
     rows.append(_legend_row('<rect x="-8" y="-6" width="16" height="12" fill="#5c5c5c"/>', "blocked"))
     rows.append(_legend_row('<rect x="-8" y="-6" width="16" height="12" fill="#d9d9d9"/>', "skeleton"))
-    if pathgraph:
-        sample = '<path d="M-12 0h24" stroke="#888888"/><circle r="2.5" fill="#444444"/>'
-        rows.append(_legend_row(sample, "pathgraph"))
+    sample = '<path d="M-12 0h24" stroke="#888888"/><circle r="2.5" fill="#444444"/>'
+    rows.append(_legend_row(sample, "pathgraph"))
     return rows
 
 
 def _legend_row(sample: str, text: str) -> LegendRow:
     """Return the row of a sample and the text that explains it."""
-    # A function of x and y, in pixels, that gives its SVG.
     return lambda x, y: (
         f'<g class="legend" transform="translate({x + 12:g} {y:g})">{sample}<text x="22" y="4">{text}</text></g>'
     )
@@ -200,6 +170,4 @@ def without_straight_points(points: Floats) -> Floats:
 
 def rectangles_of(mask: Bools) -> str:
     """Return SVG path data of the horizontal runs of True squares of a mask (rows, columns)."""
-    # A rectangle for each run.
-    # Empty text for an empty mask.
     return "".join(f"M{a} {row}h{b - a}v1h{a - b}z" for row, a, b in runs_along_rows(mask).each())

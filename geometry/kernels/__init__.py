@@ -6,7 +6,6 @@ Modules in reading order:
     jit             functions that compile themselves when first called (numba)
     cache           compiled code on disk: damaged files count as missing
     heap            a binary heap in two arrays
-    bounded_heap    the same with a fixed capacity: a full heap drops items and counts them
     bucket_queue    a priority queue for costs that are small whole numbers
 
 Public names: ``compiled``, ``bare`` (jit), and the types of arrays.

@@ -9,6 +9,7 @@ import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +23,11 @@ SEAL = b"\nseal of utak: "  # what stands before the digest
 class SealedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
     """The cached code of one kernel: an index and a file for each signature."""
 
-    def __init__(self, like: Any, elsewhere: str | None) -> None:
-        super().__init__(like._cache_path, like._index_name.removesuffix(".nbi"), like._source_stamp)
+    def __init__(self, like: Any, elsewhere: str | None, stamp: Any) -> None:
+        super().__init__(like._cache_path, like._index_name.removesuffix(".nbi"), stamp)
         self._elsewhere: Any = None
         if elsewhere is not None:
-            self._elsewhere = SealedFile(like, None)
+            self._elsewhere = SealedFile(like, None, stamp)
             self._elsewhere._cache_path = elsewhere
             self._elsewhere._index_path = str(Path(elsewhere, like._index_name))
 
@@ -89,4 +90,12 @@ def make_safe(dispatcher: Any, source: str) -> None:
     store = dispatcher._cache
     beside = Path(source).with_name("__pycache__")
     is_elsewhere = "NUMBA_CACHE_DIR" not in os.environ and beside.resolve() != Path(store.cache_path).resolve()
-    store._cache_file = SealedFile(store._cache_file, str(beside) if is_elsewhere else None)
+    store._cache_file = SealedFile(
+        store._cache_file, str(beside) if is_elsewhere else None, _stamp(Path(source).parent)
+    )
+
+
+@cache
+def _stamp(folder: Path) -> list[tuple[str, float, int]]:
+    """Return name, time and size of all sources of a room; a kernel holds the code and constants of others there."""
+    return [(path.name, path.stat().st_mtime, path.stat().st_size) for path in sorted(folder.glob("*.py"))]

@@ -72,7 +72,6 @@ def compiled(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Retur
 
 def bare(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
     """Decorate a function that makes no arrays but views, returns none, and calls only such kernels."""
-    # Return its kernel.
     return Kernel(function, False)
 
 
@@ -236,7 +235,7 @@ def kernel_status() -> tuple[int, bool]:
 @cache
 def announce_compiling() -> None:
     """Print on standard error, once in a process, that kernels are being compiled; start the reports of progress."""
-    once = "once per installation"
+    once = "once per installation, and when geometry was changed"
     if not PROGRESS.has_cache:
         once = "they cannot be kept for the next run: set NUMBA_CACHE_DIR to a folder that can be written"
     print(f"utak: compiling geometry kernels ({once}) ...", file=sys.stderr, flush=True)

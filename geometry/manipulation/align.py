@@ -24,14 +24,12 @@ MIN_ALIGNMENT = 1e-6  # degrees or squares; rounding: less is no motion
 MAX_ALIGNMENTS = 4  # first legs for which the rest is planned; convention, for time
 
 
-def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS) -> list[Leg] | None:
+def plan_aligned(query: ManipulationQuery) -> list[Leg] | None:
     """Return legs of which the first aligns the body and the others go by whole squares; None when none are found."""
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame.
     if _is_aligned(query.shape):
         return None
     best: list[Leg] | None = None
-    for _, first in zip(range(max_alignments), _aligning_legs(query), strict=False):
+    for _, first in zip(range(MAX_ALIGNMENTS), _aligning_legs(query), strict=False):
         rest = plan_on_lattice(query_after(query, [first]))
         if rest is not None:
             legs = join_legs([first], rest)
@@ -48,8 +46,6 @@ def _is_aligned(shape: Any) -> bool:
 
 def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
     """Yield the legs that align the body, at most one for each grasp, those with short walks first."""
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame.
     tilt = longest_edge_tilt(query.shape)
     for candidate in grasp_candidates(query):
         relative = query.grasp_offset(candidate.place)

@@ -33,8 +33,6 @@ class LegExtraction:
 
     def legs(self, nodes: Longs) -> list[Leg]:
         """Return the legs, one for each group of successive nodes with the same grasp, in order; [] without nodes."""
-        # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
-        # Rotate (degrees, about the robot) in order, in squares, table frame.
         count = (self.grid.rows + 2 * self.grid.pad) * self.grid.stride
         steps = [(n // count // 36, n // count // 9 % 4, n // count % 9, n % count) for n in nodes.tolist()]
         groups = [list(group) for _, group in groupby(steps, key=lambda step: step[0])]
@@ -48,8 +46,6 @@ class LegExtraction:
 
     def _leg(self, group: list[Step], first: bool, last: bool) -> Leg:
         """Return the leg of a group of steps with the same grasp, and move the shape and the robot along."""
-        # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
-        # Rotate (degrees, about the robot) in order, in squares, table frame.
         middle = place = self._robot_place(group[0])
         taken = self.query.held and first and self._square(group[0]) == self.query.square
         walk = 0 if taken else abs(math.floor(place[0]) - self.at[0]) + abs(math.floor(place[1]) - self.at[1])
@@ -109,8 +105,6 @@ class LegExtraction:
 
     def _ends(self, step: Step) -> Floats:
         """Return places of the robot at which the shape, held and turned as in a step, suits the goal (cost 0)."""
-        # (n, 2) float64 x, y in squares, table frame, in order of the numbers of squares; every k-th when there are
-        # more than MAX_END_SAMPLES;
         hold, quarters, _, _ = step
         places = np.flatnonzero(self.ends[quarters] == 0)
         row, column = np.divmod(places[:: math.ceil(len(places) / MAX_END_SAMPLES) or 1], self.grid.stride)

@@ -55,7 +55,6 @@ def _corner_region(goal: InCorner, query: ManipulationQuery) -> Any:
 
 def _region_between_walls(goal: Between, query: ManipulationQuery) -> Any:
     """Return the floor near two walls in which a body must lie to be within the slack of both."""
-    # Empty without such floor.
     reach = 2.0 * shapely.minimum_bounding_radius(query.shape) + goal.slack
     parts = shapely.get_parts(query.workspace.floor_polygon.intersection(goal.about(reach)))
     return shapely.MultiPolygon([p for p in parts if p.area > 0.0 and max(goal.gaps(p)) <= goal.slack])

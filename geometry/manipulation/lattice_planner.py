@@ -75,9 +75,6 @@ def _body_on_table(key: _BodyKey, columns: int, rows: int) -> LatticeBody:
 
 def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
     """Return the cheapest legs by whole squares, or a quick solution where that takes long."""
-    # None when none are found.
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame.
     if not query.held:
         return _cheapest_legs(query)
     nudges = _nudges(query)
@@ -94,8 +91,6 @@ def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
 
 def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
     """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes; else None."""
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame.
     x, y = query.utak
     legs = _cheapest_legs(replace(query, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
     if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
@@ -129,9 +124,7 @@ def _leg_cost(query: ManipulationQuery, legs: Sequence[Leg]) -> float:
 
 def _cheapest_legs(query: ManipulationQuery, before_nudge: ManipulationQuery | None = None) -> list[Leg] | None:
     """Return the cheapest legs of a robot that stands at the centre of a square when it holds the shape, or None."""
-    # None when none are found, or the centroid of the shape is off the table. A leg holds all from grasp to release:
-    # the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
-    # squares, table frame.
+    # None when none are found, or the centroid of the shape is off the table.
     search = _LatticeSearch(query, before_nudge or query)
     best: list[Leg] | None = None
     for bend_cost in BEND_COSTS if search.on_grid else ():
@@ -170,8 +163,6 @@ class _LatticeSearch:
 
     def legs(self, bend_cost: int) -> list[Leg] | None:
         """Return the cheapest legs, given the cost of another direction within one push; None when none are found."""
-        # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
-        # Rotate (degrees, about the robot) in order, in squares, table frame.
         if not can_reach_end(self.lattice, self.ends, self.place):
             return None
         to_go = cost_to_go(self.lattice, self.ends, bend_cost)

@@ -134,7 +134,6 @@ class PushSegment:
 
     def _traced_stops(self, workspace: Workspace, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
         """Return the stops of the best path to the last one, or to another end where that takes fewer pieces."""
-        # (k, 2).
         final, at = (best[-1][0], best[-1][1]), len(stops) - 1
         kept: list[Floats] = []
         for i in range(len(stops) - 1):

@@ -10,16 +10,16 @@ it cannot pass), and then any place and angle.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from utak.geometry.cspace.bottleneck import Bottleneck
 from utak.geometry.cspace.plan_motion import MotionPlan
-from utak.geometry.kernels.arrays import XY, Bools, Floats
+from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.align import plan_aligned
 from utak.geometry.manipulation.free_body import plan_body_alone
 from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, is_goal_met
@@ -192,43 +192,25 @@ def plan_carrying(
     query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
     if is_goal_met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
-    return replace(first_plan(query, None if on_lattice else OFF_LATTICE_PLANNERS), held=held)
+    return replace(first_plan(query, on_lattice), held=held)
 
 
-class OffLatticePlanners(NamedTuple):
-    """The planners that are asked, in this order, when whole squares and quarter turns alone lead nowhere."""
-
-    # Each returns legs, or None when it finds none.
-
-    aligned: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_aligned  # first turns the body to the lattice
-    # Carries the body along a track of the body alone, (n, 3) poses, with one grasp
-    with_one_grasp: Callable[[ManipulationQuery, Floats], Sequence[Leg] | None] = plan_with_one_grasp
-    # First brings the body to where there is more room
-    by_freeing: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_by_freeing
-
-
-OFF_LATTICE_PLANNERS = OffLatticePlanners()
-
-
-def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None = OFF_LATTICE_PLANNERS) -> CarryingPlan:
+def first_plan(query: ManipulationQuery, on_lattice: bool = False) -> CarryingPlan:
     """Return the plan of the first planner that finds one, or a plan without legs that says why none does."""
-    # The CarryingPlan holds a status ("found", "impossible" or "limit"), legs in order and the end of the body,
-    # squares, table frame; when not found the reason, "body", "hold", "start" or "goal", and the motion plan of the
-    # body alone.
     plan = query.workspace.once(("on lattice", *query.key), partial(_pressed_plan_on_lattice, query))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
         plan = _plan_of(query, plan_on_lattice(query))
-    if plan is None and off_lattice is not None:
-        plan = _plan_of(query, off_lattice.aligned(query))
-    if plan is not None or off_lattice is None:
+    if plan is None and not on_lattice:
+        plan = _plan_of(query, plan_aligned(query))
+    if plan is not None or on_lattice:
         return plan or CarryingPlan("limit", reason="hold")
     body = plan_body_alone(query)
     if body.status == "impossible":
         return CarryingPlan("impossible", reason=body.reason or "body", body=body)
     if body.status == "found":  # else the body and the robot as one thing, which is larger, would not be found to pass
-        plan = _plan_of(query, off_lattice.with_one_grasp(query, body.track))
-    plan = plan or _plan_of(query, off_lattice.by_freeing(query))
+        plan = _plan_of(query, plan_with_one_grasp(query, body.track))
+    plan = plan or _plan_of(query, plan_by_freeing(query))
     return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 

@@ -47,7 +47,6 @@ def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> S
 
 def _press_distances(goal: InCorner, gap: float) -> list[float]:
     """Return how far, in squares, to press on towards a wall at a distance `gap` (squares), in the order to try."""
-    # Up to the wall, or else as far as the goal needs;
     if gap <= goal.slack:
         return [0.0]
     return [gap, gap - goal.slack] if gap <= goal.slack + goal.press + GOAL_TOLERANCE else []

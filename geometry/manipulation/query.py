@@ -76,8 +76,6 @@ def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = Fals
 
 def join_legs(first: Sequence[Leg], following: Sequence[Leg]) -> list[Leg]:
     """Return legs followed by the legs of the query after them, with grasp offsets in the frame of the first query."""
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame.
     degrees = total_rotation(first)
     rest = [replace(leg, hold=_rotated_offset(leg.hold, -degrees)) for leg in following]
     if first and rest and rest[0].taken:

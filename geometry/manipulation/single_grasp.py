@@ -51,9 +51,6 @@ CORNER_GAP = 0.1  # squares; convention: the gap at which a body is put before t
 
 def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | None:
     """Return one leg that leads to the goal, the first that is short enough or the best of some."""
-    # None if none is found.
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame.
     candidates = sorted(grasp_candidates(query), key=lambda candidate: grasp_rank(query, candidate, track))[:MAX_GRASPS]
     left, legs = MAX_GRASP_CELLS, list[Leg]()
     for candidate in candidates:
@@ -72,8 +69,6 @@ def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | 
 
 def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
     """Return legs by whole squares to a place with room about it near the goal pose, then one leg to the goal."""
-    # None when none are found. A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then
-    # Translate (dx, dy) and Rotate (degrees, about the robot) in order, in squares, table frame.
     near = None
     if isinstance(query.goal, At):
         there = shape_at_pose(query.shape, query.goal.pose).centroid
@@ -137,9 +132,7 @@ def _leg(
     query: ManipulationQuery, candidate: GraspCandidate, goal: Pose | Inside, with_margin: bool, cells: int
 ) -> tuple[Leg | None, int]:
     """Return the leg with one grasp, or None, and how many cells the search took."""
-    # A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
-    # (degrees, about the robot) in order, in squares, table frame. None when the robot reaches nothing there, no
-    # motions are found, or a pull is needed and forbidden.
+    # None when the robot reaches nothing there, no motions are found, or a pull is needed and forbidden.
     square = direction_to_grasp(query.shape, candidate.place)
     if square is None and not candidate.taken:
         return None, 0
@@ -155,7 +148,6 @@ def _motions(
     query: ManipulationQuery, place: XY, goal: Pose | Inside, with_margin: bool, cells: int
 ) -> tuple[tuple[Motion, ...], int]:
     """Return the motions that bring the shape to a goal with a grasp at `place`, and how many cells the search took."""
-    # Translate and Rotate (about the robot) in order, table frame;
     middle = np.array([query.shape.centroid.x, query.shape.centroid.y])
     utak = (place[0] - middle[0], place[1] - middle[1])
     body = shapely.transform(padded_shape(query.shape, query.margin if with_margin else 0.0), lambda p: p - middle)

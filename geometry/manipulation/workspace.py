@@ -38,7 +38,6 @@ class Workspace:
 
     def once(self, key: Hashable, work: Callable[[], Remembered]) -> Remembered:
         """Return what some work comes to."""
-        # It is remembered, so that it is done once while it is asked for now and then.
         found: Remembered = self._known.pop(key) if key in self._known else work()
         self._known[key] = found  # the last one: those that were not asked for longest come first
         if len(self._known) > MAX_KEPT_RESULTS:
@@ -57,7 +56,7 @@ class Workspace:
 
     def is_free(self, body: ContactBody, motion: Motion) -> bool:
         """Return whether a body can make a motion (Translate or Rotate, table frame) to its end; it may touch walls."""
-        return self.obstacles.first_contact(body, motion).fraction >= FULL_MOTION
+        return self.obstacles.first_contact(body, motion) >= FULL_MOTION
 
     def far(self, body: ContactBody, vectors: Floats) -> Bools:
         """Return which pushes a body can make to their ends, each from where it stands: (n,) bool."""

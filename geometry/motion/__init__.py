@@ -10,6 +10,6 @@ Modules in reading order:
     cell_clearance    distance between body and obstacles, and the classification of cells of poses
     obstacle_field    obstacles and bounds prepared once for many motions
 
-Public names: ``Pose``, ``Translate``, ``Rotate``, ``Motion`` (se2); ``ContactBody``, ``Obstacles``, ``Contact``
+Public names: ``Pose``, ``Translate``, ``Rotate``, ``Motion`` (se2); ``ContactBody``, ``Obstacles``
 (first_contact); ``ObstacleField`` (obstacle_field).
 """

@@ -29,7 +29,6 @@ from utak.geometry.motion.time_of_impact import (
     first_turn_contact,
     is_push_clear,
     push_fractions,
-    turn_fractions,
 )
 
 SKIN_DEPTH = 1e-8  # squares: a body may be this deep in an obstacle before a motion further in is stopped; a convention
@@ -37,19 +36,6 @@ EDGES_PER_CHUNK = 4  # edges with one bounding box in the broad phase; tuned for
 MIN_EDGE_LENGTH = 1e-7  # squares: shorter edges are left out; ten skin depths, lest the inward offset turns them over
 
 
-class Contact(NamedTuple):
-    """The end of a motion at its first contact, or unstopped."""
-
-    fraction: float  # part of the motion that was travelled, 0 to 1; 1 when nothing stopped it
-    # Point of contact (x, y), squares, table frame, after the motion; None when nothing stopped it
-    place: tuple[float, float] | None = None
-    # Index of the obstacle that stopped it, in the sequence that `Obstacles` was made of; None when nothing stopped it
-    obstacle: int | None = None
-    # Unit vector (x, y), table frame, across the edges in contact, away from the obstacle; None when nothing stopped it
-    normal: tuple[float, float] | None = None
-
-
-NO_CONTACT = Contact(1.0)
 NO_EDGES = np.empty((0, 7))
 
 
@@ -103,7 +89,7 @@ class ObstaclePart(NamedTuple):
 def obstacle_part(polygon: Any) -> ObstaclePart:
     """Return a polygon prepared as an obstacle."""
     edges = with_normals(boundary_edges(polygon))
-    return ObstaclePart(polygon, edges, _offset_inward(edges, SKIN_DEPTH))
+    return ObstaclePart(polygon, edges, _offset_inward(edges))
 
 
 class Obstacles:
@@ -112,8 +98,7 @@ class Obstacles:
     Parameters
     ----------
     polygons : shapely Polygons or MultiPolygons, holes allowed, squares, table frame; or parts made of such by
-        `obstacle_part`, which spares their preparation. They may touch or overlap each other. A Contact names an
-        obstacle by its index in this sequence.
+        `obstacle_part`, which spares their preparation. They may touch or overlap each other.
 
     Attributes
     ----------
@@ -126,8 +111,7 @@ class Obstacles:
         self.polygons = tuple(part.polygon for part in parts)
         edges = np.concatenate([NO_EDGES, *(part.edges for part in parts)])
         skin = np.concatenate([NO_EDGES, *(part.skin for part in parts)])
-        owner = np.repeat(np.arange(len(parts)), [len(part.edges) for part in parts])
-        self.surface = Surface(edges, skin, _chunks(edges), edges, owner)
+        self.surface = Surface(edges, skin, _chunks(edges), edges)
 
     @cached_property
     def point_surface(self) -> Surface:
@@ -136,15 +120,15 @@ class Obstacles:
         A Surface holds edges as rows x0, y0, x1, y1, outward normal x and y, length: squares, table frame.
 
         Between two obstacles that stand flush the skins would leave a gap of 2 SKIN_DEPTH: enough for a point, for no
-        body. Its `hull` and `skin` are those of the union; its `edges` and `owner` those of the single obstacles.
+        body. Its `hull` and `skin` are those of the union; its `edges` those of the single obstacles.
         Computed at first use.
         """
         one = shapely.union_all([shapely.orient_polygons(p) for p in self.polygons], grid_size=SKIN_DEPTH / 10)
         hull = with_normals(boundary_edges(one))
-        return Surface(hull, _offset_inward(hull, SKIN_DEPTH), _chunks(hull), self.surface.edges, self.surface.owner)
+        return Surface(hull, _offset_inward(hull), _chunks(hull), self.surface.edges)
 
-    def first_contact(self, body: ContactBody, motion: Motion) -> Contact:
-        """Return where a motion of a body is stopped by an obstacle, or that it is free.
+    def first_contact(self, body: ContactBody, motion: Motion) -> float:
+        """Return the part of a motion, 0 to 1, that a body travels before an obstacle stops it.
 
         Parameters
         ----------
@@ -153,11 +137,9 @@ class Obstacles:
 
         Returns
         -------
-        Contact : the part travelled (0 to 1), the place (x, y) of contact in squares, table frame, the index of the
-            obstacle and the unit normal away from it. The fraction is 1, and all else None, when the whole motion is
-            free. Of several obstacles met at once the first found counts. A body that touches at the start may slide
-            along or leave (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7
-            where points of the contours lie nearer to each other than that.
+        float : 1 when the whole motion is free. A body that touches at the start may slide along or leave (more than 0)
+            and may not go in (0). It ends at most 1e-7 squares deep, or 3e-7 where points of the contours lie nearer
+            to each other than that.
 
         Raises
         ------
@@ -169,19 +151,17 @@ class Obstacles:
             turn, x, y = math.radians(motion.degrees), float(motion.about[0]), float(motion.about[1])
         if not math.isfinite(turn + x + y):
             raise ValueError(f"a motion must be finite, not {motion}")
-        contact = NO_CONTACT
+        fraction = 1.0
         for corners, edges, as_one in body.runs:
             if as_one and self._spares_union(corners, motion, x, y):
                 continue
             surface = self.point_surface if as_one else self.surface
             if isinstance(motion, Translate):
-                hit = first_push_contact.call_unchecked(corners, edges, surface, x, y)
+                travelled = first_push_contact.call_unchecked(corners, edges, surface, x, y)
             else:
-                hit = first_turn_contact.call_unchecked(corners, edges, surface, turn, x, y)
-            fraction, at_x, at_y, owner, nx, ny = hit
-            if owner >= 0 and fraction < contact.fraction:
-                contact = Contact(fraction, (at_x, at_y), owner, (nx, ny))
-        return contact
+                travelled = first_turn_contact.call_unchecked(corners, edges, surface, turn, x, y)
+            fraction = min(fraction, travelled)
+        return fraction
 
     def _spares_union(self, points: Floats, motion: Motion, x: float, y: float) -> bool:
         """Return whether points surely meet nothing, so that `point_surface` need not be computed for them."""
@@ -212,30 +192,6 @@ class Obstacles:
         for corners, edges, as_one in body.runs:
             surface = self.point_surface if as_one else self.surface
             fractions = np.minimum(fractions, push_fractions(corners, edges, surface, vectors))
-        return fractions
-
-    def turns(self, body: ContactBody, degrees: Floats, pivots: Floats) -> Floats:
-        """Return the fractions travelled, 0 to 1, of many rotations of one body from where it stands.
-
-        Parameters
-        ----------
-        body : the body where it stands.
-        degrees : (n,) angles, counter-clockwise positive.
-        pivots : (n, 2) x, y that the body is turned about, squares, table frame.
-
-        Returns
-        -------
-        (n,) float64; 1 where the whole rotation is free, 0 where it is stopped at once.
-
-        Raises
-        ------
-        ValueError : a number is not finite.
-        """
-        turns, pivots = np.radians(_finite(degrees)), _finite(pivots)
-        fractions = np.ones(len(turns))
-        for corners, edges, as_one in body.runs:
-            surface = self.point_surface if as_one else self.surface
-            fractions = np.minimum(fractions, turn_fractions(corners, edges, surface, turns, pivots))
         return fractions
 
 
@@ -290,13 +246,13 @@ def with_normals(edges: Floats) -> Floats:
     return rows
 
 
-def _offset_inward(edges: Floats, depth: float) -> Floats:
-    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row."""
+def _offset_inward(edges: Floats) -> Floats:
+    """Return edges (n, 7) of closed rings moved inward by SKIN_DEPTH, corners mitred, row for row."""
     shifted = edges.copy()
     next_edge = _next_on_ring(edges)
     normal, after = edges[:, 4:6], edges[next_edge, 4:6]
     mitre = -(normal + after) / np.maximum(1.0 + np.sum(normal * after, axis=1), 1e-3)[:, None]
-    corner = edges[:, 2:4] + depth * mitre
+    corner = edges[:, 2:4] + SKIN_DEPTH * mitre
     shifted[:, 2:4] = corner
     shifted[next_edge, 0:2] = corner
     shifted[:, 6] = np.hypot(shifted[:, 2] - shifted[:, 0], shifted[:, 3] - shifted[:, 1])

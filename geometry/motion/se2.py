@@ -55,13 +55,6 @@ class Translate(NamedTuple):
         """
         return Translate(self.dx * fraction, self.dy * fraction)
 
-    def reversed(self) -> "Translate":
-        """Return the motion that undoes this one, done from where this one ends.
-
-        It has the displacement negated, squares, table frame.
-        """
-        return Translate(-self.dx, -self.dy)
-
     def steered(self, onward: float, left: float) -> "Translate":
         """Return a translation given relative to the direction of this one.
 
@@ -120,13 +113,6 @@ class Rotate(NamedTuple):
         `fraction` of its angle is from 0 to 1 (not checked).
         """
         return Rotate(self.degrees * fraction, self.about)
-
-    def reversed(self) -> "Rotate":
-        """Return the motion that undoes this one, done from where this one ends.
-
-        It has minus the degrees, about the same pivot.
-        """
-        return Rotate(-self.degrees, self.about)
 
     def points(self, points: Floats) -> Floats:
         """Return points (n, 2) x, y, squares, table frame, as they lie after the motion; a new array."""

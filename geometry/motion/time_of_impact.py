@@ -8,7 +8,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import bare, compiled
@@ -25,11 +24,8 @@ class Surface(NamedTuple):
     # (k, 6) rows first, stop, x0, y0, x1, y1: ranges of rows of `hull` and their bounding boxes, for the broad phase
     chunks: Floats
     edges: Floats  # (m, 7) true edges of the obstacles. They equal `hull` but for points (see first_contact.Obstacles).
-    owner: npt.NDArray[np.intp]  # (m,) index of the obstacle that each true edge belongs to
 
 
-FirstContactHit = tuple[float, float, float, int, float, float]
-"""Fraction of the motion travelled; x and y of the contact; index of the obstacle, -1 for none; normal x and y."""
 SkinHit = tuple[float, int, int, int]
 """Time of impact; 0 for none, 1 for a corner of the body on an edge, 2 for an edge of the body on a corner; index of
 that corner or edge of the body; index of the edge of the skin (of the corner: the edge that begins there)."""
@@ -96,19 +92,15 @@ def turn_impact_angle(
 
 
 @bare
-def first_push_contact(corners: Floats, body_edges: Floats, surface: Surface, dx: float, dy: float) -> FirstContactHit:
-    """Return the first contact of a body pushed by (dx, dy)."""
-    hull, skin, chunks, edges, owner = surface
+def first_push_contact(corners: Floats, body_edges: Floats, surface: Surface, dx: float, dy: float) -> float:
+    """Return the part of a push by (dx, dy) that a body travels before its first contact, 0 to 1."""
+    hull, skin, chunks, edges = surface
     time, kind, i, j = first_push_skin_hit(corners, body_edges, hull, skin, chunks, dx, dy)
     if kind == 0:
-        return 1.0, 0.0, 0.0, -1, 0.0, 0.0
+        return 1.0
     if kind == 1:
-        x, y = corners[i, 0], corners[i, 1]
-        at, k = _last_push_entry(x, y, dx, dy, edges, time)
-        return float(at), float(x + at * dx), float(y + at * dy), int(owner[k]), float(edges[k, 4]), float(edges[k, 5])
-    x, y = hull[j, 0], hull[j, 1]
-    at, k = _last_push_entry(x, y, -dx, -dy, body_edges, time)
-    return float(at), float(x), float(y), int(owner[j]), float(-body_edges[k, 4]), float(-body_edges[k, 5])
+        return _last_push_entry(corners[i, 0], corners[i, 1], dx, dy, edges, time)
+    return _last_push_entry(hull[j, 0], hull[j, 1], -dx, -dy, body_edges, time)
 
 
 @bare
@@ -181,10 +173,9 @@ def is_push_clear(points: Floats, edges: Floats, dx: float, dy: float) -> bool:
 
 
 @bare
-def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
-    """Return (time, row) of the last entry through the true edges up to the time `until`."""
-    # Of equal times the first row.
-    last, by = 0.0, -1
+def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> float:
+    """Return the time of the last entry through the true edges up to the time `until`; 0 for none."""
+    last = -1.0
     x1, y1 = x + until * dx, y + until * dy
     low_x, low_y, high_x, high_y = (
         min(x, x1) - EDGE_END_TOLERANCE,
@@ -198,58 +189,24 @@ def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, un
         if max(edges[k, 1], edges[k, 3]) < low_y or min(edges[k, 1], edges[k, 3]) > high_y:
             continue
         time = push_impact_time(x, y, dx, dy, edges, k)
-        if time <= until and (time > last or by < 0):
-            last, by = time, k
-    if by < 0:
-        by = _nearest_ahead(x, y, dx, dy, 0.0, 0.0, edges)
-    return last, by
-
-
-@bare
-def _nearest_ahead(
-    x: float, y: float, dx: float, dy: float, centripetal_x: float, centripetal_y: float, edges: Floats
-) -> int:
-    """Return the row of the edge nearest to (x, y) among those that face its motion; 0 if none does."""
-    best, at = math.inf, 0
-    for k in range(len(edges)):
-        nx, ny = edges[k, 4], edges[k, 5]
-        ahead = nx * dx + ny * dy
-        if ahead < 0.0 or (ahead < MIN_APPROACH and nx * centripetal_x + ny * centripetal_y < 0.0):
-            px, py = x - edges[k, 0], y - edges[k, 1]
-            along = nx * py - ny * px
-            off = along - min(max(along, 0.0), edges[k, 6])
-            d2 = (nx * px + ny * py) ** 2 + off * off
-            if d2 < best:
-                best, at = d2, k
-    return at
+        if last < time <= until:
+            last = time
+    return last if last >= 0.0 else 0.0
 
 
 @bare
 def first_turn_contact(
     corners: Floats, body_edges: Floats, surface: Surface, turn: float, cx: float, cy: float
-) -> FirstContactHit:
-    """Return the first contact of a body turned by `turn` radians, counter-clockwise positive, about (cx, cy)."""
-    hull, skin, chunks, edges, owner = surface
+) -> float:
+    """Return the part of a turn about (cx, cy), in radians, that a body travels before its first contact, 0 to 1."""
+    hull, skin, chunks, edges = surface
     sign = 1.0 if turn >= 0.0 else -1.0
     time, kind, i, j = first_turn_skin_hit(corners, body_edges, hull, skin, chunks, cx, cy, sign, abs(turn))
     if kind == 0:
-        return 1.0, 0.0, 0.0, -1, 0.0, 0.0
+        return 1.0
     if kind == 1:
-        x, y = corners[i, 0], corners[i, 1]
-        at, k = _last_turn_entry(x, y, cx, cy, sign, edges, time)
-        x, y = _rotate(x - cx, y - cy, sign * at)
-        return (
-            float(at / abs(turn)),
-            float(cx + x),
-            float(cy + y),
-            int(owner[k]),
-            float(edges[k, 4]),
-            float(edges[k, 5]),
-        )
-    x, y = hull[j, 0], hull[j, 1]
-    at, k = _last_turn_entry(x, y, cx, cy, -sign, body_edges, time)
-    nx, ny = _rotate(-body_edges[k, 4], -body_edges[k, 5], sign * at)
-    return float(at / abs(turn)), float(x), float(y), int(owner[j]), float(nx), float(ny)
+        return _last_turn_entry(corners[i, 0], corners[i, 1], cx, cy, sign, edges, time) / abs(turn)
+    return _last_turn_entry(hull[j, 0], hull[j, 1], cx, cy, -sign, body_edges, time) / abs(turn)
 
 
 @bare
@@ -349,26 +306,15 @@ def _passes_direction(along: float, across: float, away: float, cosine: float, l
 
 
 @bare
-def _last_turn_entry(
-    x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float
-) -> tuple[float, int]:
-    """Return (angle, row) of the last entry through the true edges within `until` radians."""
-    last, by = 0.0, -1
+def _last_turn_entry(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float) -> float:
+    """Return the angle of the last entry through the true edges within `until` radians; 0 for none."""
+    last = -1.0
     cosine = math.cos(until) if until < FULL_TURN else 1.0
     for k in range(len(edges)):
         time = turn_impact_angle(x, y, cx, cy, sign, edges, k, until, cosine)
-        if time <= until and (time > last or by < 0):
-            last, by = time, k
-    if by < 0:
-        by = _nearest_ahead(x, y, -sign * (y - cy), sign * (x - cx), cx - x, cy - y, edges)
-    return last, by
-
-
-@bare
-def _rotate(x: float, y: float, angle: float) -> tuple[float, float]:
-    """Return the vector (x, y) rotated by `angle` radians, counter-clockwise positive."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return cosine * x - sine * y, sine * x + cosine * y
+        if last < time <= until:
+            last = time
+    return last if last >= 0.0 else 0.0
 
 
 @bare
@@ -395,15 +341,5 @@ def push_fractions(corners: Floats, body_edges: Floats, surface: Surface, vector
     fractions = np.empty(len(vectors))
     for n in range(len(vectors)):
         dx, dy = vectors[n, 0], vectors[n, 1]
-        fractions[n] = first_push_contact(corners, body_edges, surface, dx, dy)[0]
-    return fractions
-
-
-@compiled
-def turn_fractions(corners: Floats, body_edges: Floats, surface: Surface, turns: Floats, pivots: Floats) -> Floats:
-    """Return the fractions travelled, 0 to 1, for many turns of one body from where it stands."""
-    fractions = np.empty(len(turns))
-    for n in range(len(turns)):
-        x, y = pivots[n, 0], pivots[n, 1]
-        fractions[n] = first_turn_contact(corners, body_edges, surface, turns[n], x, y)[0]
+        fractions[n] = first_push_contact(corners, body_edges, surface, dx, dy)
     return fractions

@@ -7,5 +7,5 @@ necks  Passages: necks of the floor, with the width of the floor on either side.
 partition  Parts of the floor: what stays connected when it is cut along passages.
 narrow_stretches  How far the floor stays narrow about a passage.
 
-Public names: `Walls`, `find_walls`, `Passage`, `find_passages`, `find_parts`, `cut_floor`, `narrow_squares`.
+Public names: `Walls`, `find_walls`, `Passage`, `find_passages`, `find_parts`, `narrow_squares`.
 """

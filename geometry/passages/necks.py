@@ -55,7 +55,7 @@ class Passage(NamedTuple):
 
         Left as seen by a robot that goes from the first side to the second.
         """
-        return _halfway(self.mouths[0][0], self.mouths[1][0])
+        return halfway(self.mouths[0][0], self.mouths[1][0])
 
     @property
     def b(self) -> XY:
@@ -63,12 +63,12 @@ class Passage(NamedTuple):
 
         Right as seen by a robot that goes from the first side to the second.
         """
-        return _halfway(self.mouths[0][1], self.mouths[1][1])
+        return halfway(self.mouths[0][1], self.mouths[1][1])
 
     @property
     def place(self) -> XY:
         """Return the midpoint between its left and its right end, (x, y) in squares."""
-        return _halfway(self.a, self.b)
+        return halfway(self.a, self.b)
 
     def shifted(self, columns: int, rows: int) -> "Passage":
         """Return the same passage in a frame whose origin lies that many squares further west and south; a new one.
@@ -87,7 +87,7 @@ class Passage(NamedTuple):
         return self._replace(mouths=mouths, gates=(there(self.gates[0]), there(self.gates[1])), between=between)
 
 
-def _halfway(one: XY, other: XY) -> XY:
+def halfway(one: XY, other: XY) -> XY:
     """Return the midpoint of two points, `one` and `other`, (x, y), in their unit and frame."""
     return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
@@ -259,7 +259,6 @@ def _squares_on(walls: Walls, edge: int) -> tuple[tuple[int, int], ...]:
 
 def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
     """Return the squares (column, row) whose centres lie in triangles, or on their edges; by row."""
-    # Empty without triangles.
     mask, west, south = _centre_mask(triangles)
     rows, columns = np.nonzero(mask)
     return tuple(zip((columns + west).tolist(), (rows + south).tolist(), strict=True))

@@ -12,7 +12,7 @@ from utak.geometry.passages.necks import Passage
 def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
     """Return the number of each square's part, from 1 in the order of the parts' first squares."""
     some = list(passages)
-    label = cut_floor(np.pad(free, 1), some)[0]
+    label = cut_floor(np.pad(free, 1), some)
     rows, columns = free.shape  # passages of a larger floor may reach beyond
     squares = [(column, row) for passage in some for column, row in passage.between]
     gates = [(int(np.floor(x)), int(np.floor(y))) for passage in some for x, y in passage.gates]
@@ -27,8 +27,8 @@ def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
     return answer
 
 
-def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]:
-    """Return the pieces of a framed floor that is cut along all mouths of passages, and the steps that are cut."""
+def cut_floor(floor: Bools, passages: Iterable[Passage]) -> Labels:
+    """Return the pieces of a framed floor that is cut along all mouths of passages."""
     closed, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
     for mouth in dict.fromkeys(mouth for passage in passages for mouth in passage.mouths):
         close_crossed_steps(closed, np.array(mouth))
@@ -39,7 +39,7 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
     closed[1, :-1] |= barred[1:]
     label = np.zeros(floor.shape, np.int32)
     number_parts(whole, closed, label, np.empty(floor.size, np.int32))
-    return label, closed
+    return label
 
 
 def block_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) -> None:

@@ -86,7 +86,7 @@ def shortest_line(
     sizes[0] = size
     if size < 0:
         return np.inf
-    sizes[1] = tighten_word(strips.left, strips.right, strips.line, False, word, size, ends, funnel, line)
+    sizes[1] = tighten_word(strips.left, strips.right, strips.line, word, size, ends, funnel, line)
     return measure_line(line, sizes[1])
 
 
@@ -236,7 +236,6 @@ def add_successors(
 @bare
 def first_beyond(right: Ints, x: float, first: int, last: int) -> int:
     """Return the first of a strip's portals, numbered `first` to `last` - 1, that ends east of x."""
-    # `last` if none does.
     while first < last:
         middle = (first + last) >> 1
         if right[middle] + 1.0 <= x:

@@ -11,7 +11,6 @@ Modules in reading order:
     contours              boundary rings of a region of squares
     distance_transform    exact distance of every square from the nearest blocked one
     distance_rows         the same, faster, row by row where walls are near
-    exact_clearance       whether a disc moved within one square stays clear of walls
     geodesic              length of the shortest 8-connected path from a start to every square
     line_of_sight         squares that a straight move of a unit square leads to
     surroundings          marked squares around a square, counted by groups

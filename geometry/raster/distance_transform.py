@@ -49,7 +49,6 @@ def has_open_block(tiles: Bools) -> bool:
 @bare
 def count_steps_south(free: Bools, steps: ColumnSteps) -> None:
     """Fill `steps` with the steps from each square south to the nearest blocked one in its column."""
-    # 0 if it is blocked.
     rows, columns = free.shape
     for j in range(columns + 2):
         steps[0, j] = 0
@@ -64,7 +63,6 @@ def count_steps_south(free: Bools, steps: ColumnSteps) -> None:
 @bare
 def count_steps_to_nearest(steps: ColumnSteps, gap: ColumnSteps) -> None:
     """Update `gap` from the row to the north."""
-    # Steps to the nearest blocked square of the column, to the south or north.
     for j in range(gap.shape[0]):
         down, up = steps[j], np.int16(gap[j] + 1)
         gap[j] = down if down < up else up
@@ -107,7 +105,6 @@ def fill_run_distances(
 @bare
 def lower_envelope(gap: ColumnSteps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """Write the sites of a run of free squares whose parabolas are lowest somewhere."""
-    # Return the index of the last one.
     top = -1
     before = np.int64(gap[first - 1])
     for column in range(first, last + 1):

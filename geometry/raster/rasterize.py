@@ -72,13 +72,11 @@ def covered_areas(shape: Any, width: int, height: int) -> Floats:
 
 def window_of(edges: Floats) -> tuple[int, int, npt.NDArray[np.bool_]]:
     """Return the squares that a shape with some edges covers, within its containing rectangle."""
-    # As `squares`, for a shape that moves often.
     return _window_of(edges)
 
 
 def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
     """Return the area to the left of closed rings of edges in every square."""
-    # (height, width) float64, squares squared.
     sums = np.zeros((2, height, width + 2))
     _accumulate(edges, sums)
     return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from utak.geometry.kernels.arrays import Square
-from utak.geometry.kernels.jit import compiled
+from utak.geometry.kernels.bucket_queue import new_queue
+from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, search_sheets
 
 MAX_CROSSING_NUMBER = 2  # largest magnitude of a crossing number: one sheet for each number; a convention
-WINDING_STEP, WINDING_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 
 def crossing_number(points: NDArray[np.float64], about: tuple[float, float]) -> int:
@@ -58,64 +58,11 @@ def shortest_path_with_crossing_number(
     first = int(np.ceil(about[1] - 0.5))  # the lowest row whose centres count as above the ray
     origin = (MAX_CROSSING_NUMBER * rows + start[1]) * columns + start[0]
     end = ((MAX_CROSSING_NUMBER + number) * rows + goal[1]) * columns + goal[0]
-    if not _search_sheets(np.ascontiguousarray(free), origin, end, first, ray, parent):
+    distance = np.full(len(parent), GEODESIC_UNREACHED, np.int32)
+    queue = new_queue(8 * len(parent) + 1)
+    if not search_sheets(np.ascontiguousarray(free), origin, end, first, ray, distance, parent, queue):
         return None
     cells = [end]
     while cells[-1] != origin:
         cells.append(int(parent[cells[-1]]))
     return [(cell % columns, cell // columns % rows) for cell in reversed(cells)]
-
-
-@compiled
-def _search_sheets(
-    free: NDArray[np.bool_], origin: int, end: int, first: int, ray: NDArray[np.bool_], parent: NDArray[np.int64]
-) -> bool:
-    """Fill `parent` along shortest paths from `origin` until `end` is reached; return whether it is."""
-    rows, columns = free.shape
-    sheets = parent.shape[0] // (rows * columns)
-    ring = WINDING_DIAGONAL + 1
-    first_entry = np.full(ring, -1, np.int64)
-    distance = np.full(parent.shape[0], -1, np.int32)
-    cell_of = np.empty(8 * parent.shape[0] + 1, np.int64)
-    next_entry = np.empty(8 * parent.shape[0] + 1, np.int64)
-    cell_of[0], next_entry[0], first_entry[0], distance[origin] = origin, -1, 0, 0
-    count, waiting, now = 1, 1, 0
-    while waiting > 0:
-        entry = first_entry[now % ring]
-        if entry < 0:
-            now += 1
-            continue
-        first_entry[now % ring] = next_entry[entry]
-        waiting -= 1
-        cell = cell_of[entry]
-        if distance[cell] != now:
-            continue
-        if cell == end:
-            return True
-        sheet, r, c = cell // (rows * columns), cell // columns % rows, cell % columns
-        for dr in range(-1, 2):
-            for dc in range(-1, 2):
-                p, q = r + dr, c + dc
-                if (dr == 0 and dc == 0) or p < 0 or q < 0 or p >= rows or q >= columns or not free[p, q]:
-                    continue
-                cost = WINDING_STEP
-                if dr != 0 and dc != 0:
-                    if not free[r, q] or not free[p, c]:
-                        continue
-                    cost = WINDING_DIAGONAL
-                level = sheet
-                if p >= first and r < first and ray[q] and ray[c]:
-                    level += 1
-                elif p < first and r >= first and ray[q] and ray[c]:
-                    level -= 1
-                if level < 0 or level >= sheets:
-                    continue
-                other = (level * rows + p) * columns + q
-                if distance[other] < 0 or now + cost < distance[other]:
-                    distance[other] = now + cost
-                    parent[other] = cell
-                    cell_of[count], next_entry[count] = other, first_entry[(now + cost) % ring]
-                    first_entry[(now + cost) % ring] = count
-                    count += 1
-                    waiting += 1
-    return False

@@ -3,14 +3,12 @@
 Modules, in reading order:
 
 route  A route: a tight path and its homotopy class.
-layer  A layer: pathgraph, strips and landmarks for a body of one radius.
+layer  A layer: pathgraph, strips and landmarks.
 astar  A* over the pathgraph, and exact distances to the goal.
 k_shortest  The k shortest paths over the pathgraph (Yen 1971, Lawler 1972).
 router  The kernel: start and goal anchored, paths found, each pulled tight.
-tighten  One path at a time: routes from words, and words from crossing numbers.
 lifting  From a word to its path over the skeleton: its chains and its clearance.
-barrier  Passages that a route must avoid.
 queries  All queries about one layer, and their scratch.
 
-Public names: `Route`, `Layer`, `least_squared_clearance`, `LayerQueries`, `word_of_crossings`.
+Public names: `Route`, `Layer`, `LayerQueries`.
 """

@@ -31,11 +31,7 @@ class RouteQuery(NamedTuple):
     # cost grows by the share that the product of this normal and the offset of the arc's head from the point gives; a
     # normal of 0 for no bias
     line: Floats
-    # (m,) 0 for chains that may be walked from end to end; bit 0: closed on request, bit 1: split by an end
-    closed: States
-    # (b, 2) chain and position of the steps that may not be taken: each from the cell at that position on the chain,
-    # counted from 0, to the next one
-    closed_steps: Ints
+    closed: States  # (m,) 1 for chains that start or goal split, which none may walk from end to end; else 0
 
 
 class Search(NamedTuple):

@@ -60,11 +60,11 @@ def new_trail(room: int) -> Trail:
 def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
     """Return the one path over the skeleton, without turning back, of the class of a reduced word."""
     trail = trail or new_trail(4 * len(word) + 1024)
-    heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
-    while (size := lift_word(heights, states, width, layer.chains, layer.runs, ends, word, trail)) == TRAIL_OVERFLOW:
+    heights, states, width, chains, strips, _ = layer
+    while (size := lift_word(heights, states, width, chains, strips, ends, word, trail)) == TRAIL_OVERFLOW:
         trail = new_trail(4 * len(trail.cell))
-    lowest, *chains = trail.queue[:size].tolist()
-    return Lifted(lowest, tuple(chains)), trail
+    lowest, *followed = trail.queue[:size].tolist()
+    return Lifted(lowest, tuple(followed)), trail
 
 
 @bare

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.routes.router import RouteAnswers
 
@@ -12,7 +10,7 @@ from utak.geometry.routes.router import RouteAnswers
 class Route:
     """A locally shortest path from a start to a goal.
 
-    Two routes with the same ends on the same screen, for bodies of one radius, can be deformed into each other over
+    Two routes with the same ends on the same screen can be deformed into each other over
     free space exactly when their signatures are equal.
 
     Attributes
@@ -49,8 +47,3 @@ def routes_of_answers(answers: RouteAnswers, found: int, most: int) -> list[Rout
         clearance = 0.5 * lowest[k] ** 0.5
         routes.append(Route(points[a:b], lengths[k], clearance, tuple(numbers[c:d]), tuple(walked[e:f])))
     return routes
-
-
-def polyline_length(points: Floats) -> float:
-    """Return the length of a polyline, (n, 2) points (x, y), in the unit of its points; 0 for one point."""
-    return float(np.hypot(*np.diff(points, axis=0).T).sum())

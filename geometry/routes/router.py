@@ -12,8 +12,7 @@ from utak.geometry.kernels.jit import bare
 from utak.geometry.routes.astar import RouteQuery, Search, new_search
 from utak.geometry.routes.k_shortest import PathStore, k_shortest_paths, new_path_store
 from utak.geometry.routes.layer import Layer
-from utak.geometry.skeleton.chains import Chains
-from utak.geometry.skeleton.skeleton import Flags, Heights, States
+from utak.geometry.skeleton.skeleton import Heights, States
 
 
 class RouteAnswers(NamedTuple):
@@ -47,9 +46,7 @@ class RouterBuffers(NamedTuple):
     stretch: Ints
 
 
-def new_router_buffers(
-    nodes: int, chains: int, landmark_count: int, wanted: int, room: int, closed_steps: Ints
-) -> RouterBuffers:
+def new_router_buffers(nodes: int, chains: int, landmark_count: int, wanted: int, room: int) -> RouterBuffers:
     """Return scratch for a query, with room for its answers; no chain is closed in it."""
     query = RouteQuery(
         np.empty(4, np.int32),
@@ -57,7 +54,6 @@ def new_router_buffers(
         np.empty((2, landmark_count)),
         np.zeros(4),
         np.zeros(chains, np.uint8),
-        closed_steps,
     )
     answered = wanted if wanted > 1 else len(BIASES)
     answers = RouteAnswers(
@@ -88,28 +84,10 @@ BIASES = 0.2, 6.0, 1.0  # shares of arc length (see set_bias); by trial among th
 STRAIGHT_ENOUGH = 1.02  # times the straight line: a route no longer than this ends the search for a shorter one
 
 
-class RoutingData(NamedTuple):
-    """Arrays of a layer as the kernels read them, flat where they are read by cell."""
-
-    heights: Heights  # (cells,) squared clearances in squared half squares, flat and padded
-    states: Flags  # (cells,) links and flags of the skeleton, 0 off it
-    width: int  # columns of the padded grid; a cell's index is (row + 1) * width + column + 1
-    chains: Chains  # the edges of the pathgraph, with their cells
-    strips: Strips  # maximal horizontal rows of free squares, and the portals between neighbouring ones
-    landmarks: Landmarks  # words and lengths of the chains, and distances from some nodes
-    body: bool  # True for a body, False for a point
-
-
-def routing_data(layer: Layer) -> RoutingData:
-    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views."""
-    heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
-    return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.landmarks, layer.body)
-
-
 @bare
-def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffers) -> int:
+def itineraries(layer: Layer, ends: Ends, wanted: int, buffers: RouterBuffers) -> int:
     """Fill the answers with up to `wanted` tight routes and return their number, or ROUTER_OVERFLOW."""
-    heights, states, width, chains, strips, landmarks, body = data
+    heights, states, width, chains, strips, landmarks = layer
     query, store = buffers.query, buffers.store
     rows, up, left = strips.row, strips.up, strips.left
     first = (int(ends[1]) + 1) * width + int(ends[0]) + 1
@@ -127,7 +105,7 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
     enough = STRAIGHT_ENOUGH * np.sqrt((ends[2] - ends[0]) ** 2 + (ends[3] - ends[1]) ** 2)
     for bias in BIASES:
         set_bias(query.line, ends, bias if wanted == 1 else 0.0)
-        set_split_chains(query.closed, start, goal, 2)
+        set_split_chains(query.closed, start, goal, 1)
         found = k_shortest_paths(chains.ends, landmarks, query, buffers.search, store, wanted)
         set_split_chains(query.closed, start, goal, 0)
         for k in range(found):
@@ -143,7 +121,7 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
                 chains.start, landmarks, buffers.start, rise, stretch, steps, buffers.goal, fall, buffers.whole
             )
             if not write_route(
-                strips, body, buffers.whole, size, ends, buffers.funnel, stretch, steps, buffers.answers, written
+                strips, buffers.whole, size, ends, buffers.funnel, stretch, steps, buffers.answers, written
             ):
                 return ROUTER_OVERFLOW
             written += 1
@@ -154,11 +132,11 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 
 @bare
 def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
-    """Close the chains that start and goal split (flag 2), or open them again (flag 0)."""
+    """Close the chains that start and goal split (flag 1), or open them again (flag 0)."""
     if start.node < 0:
-        closed[start.chain] = closed[start.chain] & 1 | flag
+        closed[start.chain] = flag
     if goal.node < 0:
-        closed[goal.chain] = closed[goal.chain] & 1 | flag
+        closed[goal.chain] = flag
 
 
 @bare
@@ -177,14 +155,14 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
     """Set the nodes and the lengths of the five arcs that link start and goal to the pathgraph; nothing is returned."""
     # When both lie on one chain, the arcs that would pass the other end are closed; when both lie in one cell, arc 4 of
     # length 0 alone is left.
-    joint, cost, closed_steps = query.joint, query.cost, query.closed_steps
+    joint, cost = query.joint, query.cost
     for k in range(2):
         anchor = goal if k else start
         for j in range(2):
             if anchor.node < 0:
                 end = j * (starts[anchor.chain + 1] - starts[anchor.chain] - 1)
                 joint[2 * k + j] = ends[anchor.chain, j]
-                cost[2 * k + j] = length_between(closed_steps, starts, length, anchor.chain, anchor.position, end)
+                cost[2 * k + j] = length_between(starts, length, anchor.chain, anchor.position, end)
             else:
                 joint[2 * k + j] = anchor.node if j == 0 else -1
                 cost[2 * k + j] = 0.0 if j == 0 else np.inf
@@ -194,19 +172,15 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
             cost[k] = np.inf
         cost[4] = 0.0
     elif start.chain == goal.chain and start.node < 0 and goal.node < 0:
-        cost[4] = length_between(closed_steps, starts, length, start.chain, start.position, goal.position)
+        cost[4] = length_between(starts, length, start.chain, start.position, goal.position)
         backward = int(start.position > goal.position)  # the arcs that would pass the other end and come back
         cost[1 - backward] = cost[2 + backward] = np.inf
 
 
 @bare
-def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
-    """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step."""
-    low, high = (begin, end) if begin < end else (end, begin)
-    for k in range(closed_steps.shape[0]):
-        if closed_steps[k, 0] == chain and low <= closed_steps[k, 1] < high:
-            return np.inf
-    return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
+def length_between(starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
+    """Return the length of a part of a chain in squares, in proportion to its cells."""
+    return float(length[chain] * abs(end - begin) / (starts[chain + 1] - starts[chain] - 1))
 
 
 @bare
@@ -308,7 +282,6 @@ def write_word(
 @bare
 def write_route(
     strips: Strips,
-    body: bool,
     word: Ints,
     size: int,
     ends: Ends,
@@ -327,7 +300,7 @@ def write_route(
     if crossings.shape[0] < crossing + size or chains.shape[0] < chain + steps:
         return False
     line = line[corner:]
-    corners = tighten_word(strips.left, strips.right, strips.line, body, word, size, ends, funnel, line)
+    corners = tighten_word(strips.left, strips.right, strips.line, word, size, ends, funnel, line)
     answers.length[k] = measure_line(line, corners)
     number = strips.crossing
     for j in range(size):

@@ -2,7 +2,8 @@
 
 Modules, in reading order:
 
-fit  The best shape of every class, and the order of the classes.
+classes  The table of classes: one row for each.
+fit  The best shape of every class.
 misfit  How badly a shape agrees with an image; the descent that improves it.
 candidates  Shapes to try: all with whole corners, and turned ones that descend.
 shape_likelihood  How likely a class makes an image (Occam's factor).

@@ -6,22 +6,22 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
+from utak.geometry.shapes.classes import CLASSES, DISC, TRIANGLE, F, H, S
 from utak.geometry.shapes.misfit import (
-    BRICK_CLASS,
-    DISC_CLASS,
-    ELL_CLASS,
-    HORSESHOE_CLASS,
+    FORM,
     IMAGE_OCCUPIED,
     IMAGE_UNKNOWN,
     PARAMETER_COUNT,
-    SQUARE_CLASS,
-    TRIANGLE_CLASS,
     Image,
     class_violation,
     count_wrong_squares,
     descend,
     disagreement,
 )
+
+TURNS = np.array([one.turns for one in CLASSES])  # quarter turns that look different
+# Whether the rectangles of a class need a height, arms, a stem that may be of another thickness
+HAS_HEIGHT, HAS_ARMS, HAS_STEM = (np.array([one.depends_on(size) for one in CLASSES]) for size in (H, F, S))
 
 # Chosen; no measurement on record. tests/geometry/shapes tells how often the class is right.
 DESCENT_STEPS = 150  # steps of a descent, at most
@@ -38,7 +38,7 @@ MAX_UNKNOWN_RIM = 2  # squares; how far a whole shape may reach into unknown squ
 def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
     """Return the best shape of a class with whole corners and sides along the axes, and how many squares are wrong."""
     best, at = math.inf, np.zeros(PARAMETER_COUNT)
-    if kind == DISC_CLASS:
+    if FORM[kind] == DISC:
         return at, best
     s0, n1, w0, e1 = _extent(image, IMAGE_OCCUPIED)
     s1, n0, w1, e0 = _extent(image, IMAGE_UNKNOWN)
@@ -46,8 +46,8 @@ def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
         for north in range(n1, min(max(n1, n0), n1 + MAX_UNKNOWN_RIM) + 1):
             for west in range(max(min(w0, w1), w0 - MAX_UNKNOWN_RIM), w0 + 1):
                 for east in range(e1, min(max(e1, e0), e1 + MAX_UNKNOWN_RIM) + 1):
-                    if kind == TRIANGLE_CLASS:
-                        shape, wrong = _whole_triangle(image, west, south, east, north, best)
+                    if FORM[kind] == TRIANGLE:
+                        shape, wrong = _whole_triangle(kind, image, west, south, east, north, best)
                     else:
                         shape, wrong = _whole_rectangles(kind, image, west, south, east, north, best)
                     if wrong < best:
@@ -71,48 +71,50 @@ def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
 def _whole_rectangles(
     kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float
 ) -> tuple[Floats, float]:
-    """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong."""
-    # If none gets fewer than `limit` squares wrong: zeros, and infinity or, for an L, `limit`.
+    """Return the best union of rectangles that just fits in a rectangle, and how many squares are wrong."""
+    # If none gets fewer than `limit` squares wrong: zeros, and infinity or, with a stem, `limit`.
     best, at = limit, np.zeros(PARAMETER_COUNT)
     width, height = east - west, north - south
-    if kind == SQUARE_CLASS and width != height:
+    if not HAS_HEIGHT[kind] and width != height:
         return at, math.inf
-    for quarter in range(1 if kind <= BRICK_CLASS else 4):
+    for quarter in range(TURNS[kind]):
         a, b = (width, height) if quarter % 2 == 0 else (height, width)
-        for thickness in range(1, 2 if kind <= BRICK_CLASS else min(a, b)):
+        for thickness in range(1, min(a, b) if HAS_ARMS[kind] else 2):
             angle = quarter * math.pi / 2
             shape = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, thickness, 0.0])
             if class_violation(kind, shape) == 0.0:
                 wrong = count_wrong_squares(kind, shape, image, best)
                 if wrong < best:
                     best, at = float(wrong), shape
-    if kind == ELL_CLASS and best > 0.0:
-        return _whole_uneven_ell(image, west, south, east, north, best, at)
+    if HAS_STEM[kind] and best > 0.0:
+        return _whole_uneven(kind, image, west, south, east, north, best, at)
     return at, best if best < limit else math.inf
 
 
 @compiled
-def _whole_uneven_ell(
-    image: Image, west: int, south: int, east: int, north: int, limit: float, shape: Floats
+def _whole_uneven(
+    kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float, shape: Floats
 ) -> tuple[Floats, float]:
-    """Return the best L with arms of two widths that just fits in a rectangle, if it is better than a shape."""
+    """Return the best shape with arms of two widths that just fits in a rectangle, if it is better than a shape."""
     # The result is (numbers, wrong squares); otherwise `shape` and `limit` are returned.
     best, at = limit, shape
-    for quarter in range(4):
+    for quarter in range(TURNS[kind]):
         a, b = (east - west, north - south) if quarter % 2 == 0 else (north - south, east - west)
         for foot in range(1, b - MIN_NOTCH + 1):
             for stem in range(1, a - MIN_NOTCH + 1):
                 angle = quarter * math.pi / 2
                 other = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, foot, stem])
-                if foot != stem and class_violation(ELL_CLASS, other) == 0.0:
-                    wrong = count_wrong_squares(ELL_CLASS, other, image, best)
+                if foot != stem and class_violation(kind, other) == 0.0:
+                    wrong = count_wrong_squares(kind, other, image, best)
                     if wrong < best:
                         best, at = float(wrong), other
     return at, best
 
 
 @compiled
-def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, limit: float) -> tuple[Floats, float]:
+def _whole_triangle(
+    kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float
+) -> tuple[Floats, float]:
     """Return the best triangle with a side on a rectangle's side and a whole corner on the opposite one."""
     best, at = limit, np.zeros(PARAMETER_COUNT)
     for turn in range(3):
@@ -128,7 +130,7 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
                 else:
                     x0, x1 = (west, east) if side == 2 else (east, west)
                     shape = np.array([x0, south, x0, north, x1, south + tip, 0.0], np.float64)
-                wrong = count_wrong_squares(TRIANGLE_CLASS, shape, image)
+                wrong = count_wrong_squares(kind, shape, image)
                 if wrong < best:
                     best, at = float(wrong), shape
     return at, best if best < limit else math.inf
@@ -139,7 +141,7 @@ def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
     """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong."""
     free, starts = initial_steps(kind), _starts(kind, image)
     at, best = _best_descended(kind, starts, free, image)
-    if kind == ELL_CLASS and best > 0.0:  # perhaps with arms of two widths
+    if HAS_STEM[kind] and best > 0.0:  # perhaps with arms of two widths
         starts[:, 6] = starts[:, 5]
         free[6] = free[5]
         other, wrong = _best_descended(kind, starts, free, image)
@@ -167,17 +169,17 @@ def _best_descended(kind: int, starts: Floats, free: Floats, image: Image) -> tu
             best, at, least = wrong, shape, loss
         if least == 0.0:
             break
-    if kind == DISC_CLASS and best > 0.0:
-        return _refined_disc(at, best, image)
+    if FORM[kind] == DISC and best > 0.0:
+        return _refined_disc(kind, at, best, image)
     return at, best
 
 
 @compiled
-def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float]:
+def _refined_disc(kind: int, disc: Floats, wrong: float, image: Image) -> tuple[Floats, float]:
     """Return the disc near one, at places and radii in fine steps, with the fewest wrong squares, and their number."""
     # The disc of least disagreement may get several squares wrong by very little, because the rim of a wide disc passes
     # many corners of squares.
-    best, at, least = wrong, disc, disagreement(DISC_CLASS, disc, image)
+    best, at, least = wrong, disc, disagreement(kind, disc, image)
     for i in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
         for j in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
             for k in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
@@ -185,9 +187,9 @@ def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, flo
                 other[0] += i * DISC_STEP
                 other[1] += j * DISC_STEP
                 other[2] += k * DISC_STEP
-                fewer = float(count_wrong_squares(DISC_CLASS, other, image))
-                if fewer <= best and class_violation(DISC_CLASS, other) == 0.0:
-                    loss = disagreement(DISC_CLASS, other, image)
+                fewer = float(count_wrong_squares(kind, other, image))
+                if fewer <= best and class_violation(kind, other) == 0.0:
+                    loss = disagreement(kind, other, image)
                     if fewer < best or loss < least:
                         best, at, least = fewer, other, loss
     return at, best
@@ -196,25 +198,20 @@ def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, flo
 @compiled
 def initial_steps(kind: int) -> Floats:
     """Return how far each number of a class is moved at first in a descent, (PARAMETER_COUNT,); 0 where it stays."""
-    if kind == DISC_CLASS:
+    if FORM[kind] == DISC:
         return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0])
-    if kind == TRIANGLE_CLASS:
+    if FORM[kind] == TRIANGLE:
         return np.array([0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.0])
-    free = np.array([0.1, 0.3, 0.3, 0.4, 0.4, 0.3, 0.0])
-    if kind <= BRICK_CLASS:
-        free[5] = 0.0
-    if kind == SQUARE_CLASS:
-        free[4] = 0.0
-    return free
+    return np.array([0.1, 0.3, 0.3, 0.4, 0.4 * HAS_HEIGHT[kind], 0.3 * HAS_ARMS[kind], 0.0])
 
 
 @compiled
 def _starts(kind: int, image: Image) -> Floats:
     """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), float64."""
-    if kind == DISC_CLASS:
+    if FORM[kind] == DISC:
         return _start_disc(image)
-    thickness_count = 3 if kind >= ELL_CLASS and kind <= HORSESHOE_CLASS else 1
-    angles = FAN_ANGLES if kind >= ELL_CLASS else FAN_ANGLES // 4
+    thickness_count = 3 if HAS_ARMS[kind] else 1
+    angles = FAN_ANGLES * TURNS[kind] // 4
     starts = np.zeros((angles * thickness_count, PARAMETER_COUNT))
     for k in range(angles):
         angle = 2 * math.pi * k / FAN_ANGLES
@@ -255,14 +252,14 @@ def _write_start(kind: int, image: Image, angle: float, thickness: float, out: F
                 u0, u1, v0 = min(u0, u), max(u1, u), min(v0, v)
     off = (abs(c) + abs(s)) / 2 - 0.3
     u0, u1, v0, v1 = u0 + off, u1 - off, v0 + off, v1 - off
-    if kind == TRIANGLE_CLASS:
+    if FORM[kind] == TRIANGLE:
         out[0], out[1] = c * u0 - s * v0, s * u0 + c * v0
         out[2], out[3] = c * u1 - s * v0, s * u1 + c * v0
         out[4], out[5] = c * tip - s * v1, s * tip + c * v1
         return
     mid_u, mid_v = (u0 + u1) / 2, (v0 + v1) / 2
     width, height = max(u1 - u0, 1.0), max(v1 - v0, 1.0)
-    if kind == SQUARE_CLASS:
+    if not HAS_HEIGHT[kind]:
         width = (width + height) / 2
     out[0], out[1], out[2] = angle, c * mid_u - s * mid_v, s * mid_u + c * mid_v
     out[3], out[4], out[5] = width, height, thickness

@@ -20,18 +20,10 @@ import shapely
 
 from utak.geometry.kernels.arrays import Bools, Floats
 from utak.geometry.shapes import misfit
-from utak.geometry.shapes.candidates import best_turned_shape, best_whole_shape
+from utak.geometry.shapes.candidates import HAS_ARMS, HAS_HEIGHT, best_turned_shape, best_whole_shape
+from utak.geometry.shapes.classes import CLASSES, DISC, TRIANGLE
 from utak.geometry.shapes.shape_likelihood import parameter_volume
 
-CLASSES = {
-    "square": misfit.SQUARE_CLASS,
-    "brick": misfit.BRICK_CLASS,
-    "disc": misfit.DISC_CLASS,
-    "triangle": misfit.TRIANGLE_CLASS,
-    "l_shape": misfit.ELL_CLASS,
-    "t_shape": misfit.TEE_CLASS,
-    "u_shape": misfit.HORSESHOE_CLASS,
-}  # ordered by the number of their parameters, then as the eye prefers them; convention
 RIM = 2  # squares of known floor around the image that count; convention
 DISC_CORNERS = 32  # corners of the polygon that stands for a disc; convention
 MAX_SLIGHT_NOTCH = 0.3  # share of the sides; an L with a smaller notch counts as a disc; chosen
@@ -43,7 +35,7 @@ class Fit:
 
     Attributes
     ----------
-    shape : "square", "brick", "l_shape", "t_shape", "u_shape", "triangle" or "disc".
+    shape : the name of the class, such as "brick".
     misfit : number of squares wrong: occupied and not covered, or free and covered.
     polygon : shapely Polygon, in squares, origin at the lower left corner of square (0, 0) of the array fitted to, x
         along its columns, y along its rows.
@@ -81,7 +73,7 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 
     Returns
     -------
-    list of Fit : one for each of the seven classes, in that order: its name, the number of squares it gets wrong, its
+    list of Fit : one for each class, in that order: its name, the number of squares it gets wrong, its
     polygon in squares from the lower left corner of square (0, 0) of the array, its sizes in squares, and its angle in
     degrees.
 
@@ -96,10 +88,11 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
     ('square', 0, 3.0)
     """
     image, west, south = _image(occupied, possible)
-    candidate = sorted(
-        (_best_of_class(name, kind, image) for name, kind in CLASSES.items()),
-        key=lambda one: (one.wrong, not one.whole),
-    )
+    best: dict[str, _Candidate] = {}  # several rows of one name are mirror images
+    rows = (_best_of_row(kind, image) for kind in range(len(CLASSES)))
+    for one in sorted(rows, key=lambda one: (one.wrong, not one.whole)):
+        best.setdefault(CLASSES[one.kind].name, one)
+    candidate = list(best.values())
     ties = sum(one.wrong == candidate[0].wrong for one in candidate)
     return [_fit(one, west, south) for one in (*_likeliest_first(candidate[:ties], image), *candidate[ties:])]
 
@@ -107,21 +100,20 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 class _Candidate(NamedTuple):
     """The best shape of a class for an image, and the number of squares that it gets wrong."""
 
-    name: str  # as Fit.shape.
-    kind: int  # the class as misfit numbers it
+    kind: int  # the row of its class
     shape: Floats  # (PARAMETER_COUNT,) its numbers, as in misfit, in squares of the image
     wrong: int  # count of known squares that it gets wrong
     whole: bool  # whether it has whole corners, as Fit.whole.
 
 
-def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
-    """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong."""
+def _best_of_row(kind: int, image: misfit.Image) -> _Candidate:
+    """Return the best shape of a row of the table: the best whole one unless a turned one gets fewer squares wrong."""
     shape, wrong = best_whole_shape(kind, image)
     if wrong > 0:
         other, worse = best_turned_shape(kind, image)
         if worse < wrong:
-            return _Candidate(name, kind, other, int(worse), False)
-    return _Candidate(name, kind, shape, int(wrong), True)
+            return _Candidate(kind, other, int(worse), False)
+    return _Candidate(kind, shape, int(wrong), True)
 
 
 def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_Candidate]:
@@ -133,14 +125,14 @@ def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_C
         rooms.sort(key=lambda pair: -pair[1].log_likelihood)
         others = [one if one.wrong else one._replace(shape=room.mean) for one, room in rooms]
     rounded = bool(whole) and _is_cut_square(whole[0]) and not (image == misfit.IMAGE_UNKNOWN).any()
-    return sorted([*whole, *others], key=lambda one: not (rounded and one.kind == misfit.DISC_CLASS))
+    return sorted([*whole, *others], key=lambda one: not (rounded and misfit.FORM[one.kind] == DISC))
 
 
 def _is_cut_square(candidate: _Candidate) -> bool:
     """Return whether a shape is an L with a notch as slight as the image of a small disc has."""
     width, height, thickness = candidate.shape[3:6]
-    notch = max((width - misfit.stem_of(candidate.shape)) / width, (height - thickness) / height)
-    return candidate.kind == misfit.ELL_CLASS and bool(notch < MAX_SLIGHT_NOTCH)
+    notch = max((width - _sizes_of(candidate.shape)[3]) / width, (height - thickness) / height)
+    return CLASSES[candidate.kind].name == "l_shape" and bool(notch < MAX_SLIGHT_NOTCH)
 
 
 def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, int]:
@@ -164,20 +156,26 @@ def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
     """Return a candidate as a Fit, in the squares of the whole array."""
     polygon = shapely.Polygon(outline(candidate.kind, candidate.shape) + np.array([west, south], float))
     width, height, thickness = _sizes(candidate.kind, candidate.shape, polygon)
-    degrees = 0.0 if candidate.kind == misfit.DISC_CLASS else _rotation(candidate.kind, candidate.shape)
-    return Fit(candidate.name, candidate.wrong, polygon, candidate.whole, width, height, thickness, degrees)
+    degrees = 0.0 if misfit.FORM[candidate.kind] == DISC else _rotation(candidate.kind, candidate.shape)
+    return Fit(
+        CLASSES[candidate.kind].name, candidate.wrong, polygon, candidate.whole, width, height, thickness, degrees
+    )
+
+
+def _sizes_of(shape: Floats) -> Floats:
+    """Return width, height, thickness and stem of a union of rectangles, (4,), in squares."""
+    return np.array([*shape[3:6], shape[6] or shape[5]])
 
 
 def outline(kind: int, shape: Floats) -> Floats:
     """Return the corners (n, 2) x, y of a shape, in order, in squares of the image, without the first one repeated."""
-    # Corners need not be whole numbers.
-    if kind == misfit.TRIANGLE_CLASS:
+    if misfit.FORM[kind] == TRIANGLE:
         return shape[:6].reshape(3, 2)
-    if kind == misfit.DISC_CLASS:
+    if misfit.FORM[kind] == DISC:
         angles = 2 * math.pi * (np.arange(DISC_CORNERS) + 0.5) / DISC_CORNERS
         return np.column_stack([shape[0] + shape[2] * np.cos(angles), shape[1] + shape[2] * np.sin(angles)])
-    width, height, thickness = shape[3], shape[3] if kind == misfit.SQUARE_CLASS else shape[4], shape[5]
-    corners = np.array(_corners(kind, width, height, thickness, misfit.stem_of(shape))) - np.array([width, height]) / 2
+    middle = np.array([shape[3], shape[4] if HAS_HEIGHT[kind] else shape[3]]) / 2
+    corners = np.array(CLASSES[kind].corners) @ _sizes_of(shape) - middle
     quarters = shape[0] / (math.pi / 2)
     c, s = math.cos(shape[0]), math.sin(shape[0])
     if quarters == round(quarters):
@@ -186,43 +184,21 @@ def outline(kind: int, shape: Floats) -> Floats:
     return np.column_stack([shape[1] + c * x - s * y, shape[2] + s * x + c * y])
 
 
-def _corners(kind: int, width: float, height: float, thickness: float, stem: float) -> list[tuple[float, float]]:
-    """Return the corners (x, y) of a shape made of rectangles, lower left at the origin, counter-clockwise."""
-    if kind <= misfit.BRICK_CLASS:
-        return [(0, 0), (width, 0), (width, height), (0, height)]
-    if kind == misfit.ELL_CLASS:
-        return [(0, 0), (width, 0), (width, thickness), (stem, thickness), (stem, height), (0, height)]
-    left, right = (width - thickness) / 2, (width + thickness) / 2
-    foot = [(0, 0), (width, 0)]
-    if kind == misfit.TEE_CLASS:
-        return [
-            *foot,
-            (width, thickness),
-            (right, thickness),
-            (right, height),
-            (left, height),
-            (left, thickness),
-            (0, thickness),
-        ]
-    inner = [(width - thickness, height), (width - thickness, thickness), (thickness, thickness), (thickness, height)]
-    return [*foot, (width, height), *inner, (0, height)]
-
-
 def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]:
     """Return the width, height and thickness of a shape, in squares; thickness 0.0 without arms."""
-    if kind == misfit.DISC_CLASS:
+    if misfit.FORM[kind] == DISC:
         return 2 * float(shape[2]), 2 * float(shape[2]), 0.0
-    if kind == misfit.TRIANGLE_CLASS:
+    if misfit.FORM[kind] == TRIANGLE:
         corners = shape[:6].reshape(3, 2)
         sides = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T)
         return float(sides.max()), float(2 * polygon.area / sides.max()), 0.0
-    height = shape[3] if kind == misfit.SQUARE_CLASS else shape[4]
-    return float(shape[3]), float(height), float(shape[5]) if kind >= misfit.ELL_CLASS else 0.0
+    height = shape[4] if HAS_HEIGHT[kind] else shape[3]
+    return float(shape[3]), float(height), float(shape[5]) if HAS_ARMS[kind] else 0.0
 
 
 def _rotation(kind: int, shape: Floats) -> float:
     """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side."""
-    if kind != misfit.TRIANGLE_CLASS:
+    if misfit.FORM[kind] != TRIANGLE:
         return math.degrees(float(shape[0])) % 360.0
     corners = shape[:6].reshape(3, 2)
     sides = np.roll(corners, -1, axis=0) - corners

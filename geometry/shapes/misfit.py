@@ -1,8 +1,9 @@
 """Misfit: how badly a shape laid over a digital image agrees with it. Plain loops for numba.
 
-A shape is a class and seven numbers, in squares of the image and radians counter-clockwise. SQUARE, BRICK, ELL, TEE and
-HORSESHOE: angle, centre x and y of the rectangle that holds the shape, its width, its height, its thickness, and of an
-ELL the thickness of its stem where that differs, else 0. TRIANGLE: three corners x, y. DISC: centre x and y, radius.
+A shape is a class (its row in geometry.shapes.classes) and seven numbers, in squares of the image and radians
+counter-clockwise. Of a union of rectangles: angle, centre x and y of the rectangle that holds the shape, its width,
+its height, the thickness, and that of the stem where it differs, else 0. Of a triangle: three corners x, y. Of a disc:
+centre x and y, radius.
 
 An image is an array of IMAGE_OCCUPIED, IMAGE_FREE and IMAGE_UNKNOWN squares, with row 0 in the south. A shape and a
 square overlap when no line separates them: their gap is the widest such separation, negative when there is none. Every
@@ -16,14 +17,24 @@ import numpy.typing as npt
 
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
+from utak.geometry.shapes.classes import CLASSES, DISC, TRIANGLE
 
 Image = npt.NDArray[np.int8]
 IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN = 0, 1, 2  # states of a square of an image
-SQUARE_CLASS, BRICK_CLASS, ELL_CLASS, TEE_CLASS, HORSESHOE_CLASS, TRIANGLE_CLASS, DISC_CLASS = 0, 1, 2, 3, 4, 5, 6
 PARAMETER_COUNT = 7  # numbers of a shape, of whatever class
 AGREEMENT_MARGIN = 0.02  # squares; a gap with the right sign still costs below this; chosen
 MIN_FEATURE = 0.7  # squares; convention: arms, gaps and notches of a proper shape are at least so long
-MIN_BRICK_RATIO = 1.15  # length by width; convention: a brick is at least so much longer than wide
+
+# The table of classes as arrays, a row a class.
+FORM = np.array([one.form for one in CLASSES])
+MIN_RATIO = np.array([one.min_ratio for one in CLASSES])
+PIECE_COUNT = np.array([len(one.pieces) for one in CLASSES])
+PIECES = np.zeros((len(CLASSES), PIECE_COUNT.max(), 4, 4))
+FEATURE_COUNT = np.array([len(one.features) for one in CLASSES])
+FEATURES = np.zeros((len(CLASSES), FEATURE_COUNT.max(), 4))
+for _kind, _one in enumerate(CLASSES):
+    PIECES[_kind, : len(_one.pieces)] = np.reshape(_one.pieces, (-1, 4, 4))
+    FEATURES[_kind, : len(_one.features)] = np.reshape(_one.features, (-1, 4))
 
 
 @compiled
@@ -61,32 +72,23 @@ def count_wrong_squares(kind: int, shape: Floats, image: Image, most: float = ma
 @compiled
 def class_violation(kind: int, shape: Floats) -> float:
     """Return by how much a shape fails to be a proper one of its class, in squares; 0 for a proper shape."""
-    if kind == DISC_CLASS:
+    if FORM[kind] == DISC:
         return float(max(0.0, MIN_FEATURE - shape[2]))
-    if kind == TRIANGLE_CLASS:
+    if FORM[kind] == TRIANGLE:
         return max(0.0, MIN_FEATURE - _smallest_height(shape))
-    width, height, thickness = shape[3], shape[4], shape[5]
-    stem = stem_of(shape)
-    bad = max(0.0, MIN_FEATURE - width)
-    if kind >= BRICK_CLASS:
-        bad += max(0.0, MIN_FEATURE - height)
-    if kind == BRICK_CLASS:
-        bad += max(0.0, MIN_BRICK_RATIO * min(width, height) - max(width, height))
-    if kind >= ELL_CLASS:
-        across = stem if kind == ELL_CLASS else 2 * thickness if kind == HORSESHOE_CLASS else thickness + MIN_FEATURE
-        bad += (
-            max(0.0, MIN_FEATURE - thickness)
-            + max(0.0, thickness + MIN_FEATURE - height)
-            + max(0.0, across + MIN_FEATURE - width)
-        )
-        bad += max(0.0, MIN_FEATURE - stem)
+    bad = 0.0
+    for k in range(FEATURE_COUNT[kind]):
+        bad += max(0.0, MIN_FEATURE - length(FEATURES[kind, k], shape))
+    if MIN_RATIO[kind] > 0.0:
+        bad += max(0.0, MIN_RATIO[kind] * min(shape[3], shape[4]) - max(shape[3], shape[4]))
     return float(bad)
 
 
 @compiled
-def stem_of(shape: Floats) -> float:
-    """Return the thickness of a shape's stem, in squares; it differs from the other arms only in some ELLs."""
-    return float(shape[6] if shape[6] != 0.0 else shape[5])
+def length(size: Floats, shape: Floats) -> float:
+    """Return a length that the table of classes gives by its coefficients, in squares."""
+    stem = shape[6] if shape[6] != 0.0 else shape[5]
+    return float(size[0] * shape[3] + size[1] * shape[4] + size[2] * shape[5] + size[3] * stem)
 
 
 @compiled
@@ -103,30 +105,15 @@ def _smallest_height(shape: Floats) -> float:
 @compiled
 def convex_pieces(kind: int, shape: Floats) -> Floats:
     """Return a shape's convex pieces as separating lines (n, 3): rows (normal x, y, offset), eight a piece."""
-    if kind == DISC_CLASS:
+    if FORM[kind] == DISC:
         return shape[:3].copy().reshape(1, 3)
-    if kind == TRIANGLE_CLASS:
+    if FORM[kind] == TRIANGLE:
         return _triangle_lines(shape)
-    width, height, thickness = shape[3], shape[4], shape[5]
-    height = width if kind == SQUARE_CLASS else height
-    west, south, east, north = -width / 2, -height / 2, width / 2, height / 2
-    if kind <= BRICK_CLASS:
-        lines = np.empty((8, 3))
-    elif kind <= TEE_CLASS:
-        lines = np.empty((16, 3))
-    else:
-        lines = np.empty((24, 3))
-    if kind <= BRICK_CLASS:
-        _rectangle_lines(shape, west, south, east, north, lines, 0)
-        return lines
-    _rectangle_lines(shape, west, south, east, south + thickness, lines, 0)
-    if kind == TEE_CLASS:
-        _rectangle_lines(shape, -thickness / 2, south, thickness / 2, north, lines, 8)
-        return lines
-    stem = stem_of(shape)
-    _rectangle_lines(shape, west, south, west + stem, north, lines, 8)
-    if kind == HORSESHOE_CLASS:
-        _rectangle_lines(shape, east - thickness, south, east, north, lines, 16)
+    lines = np.empty((8 * PIECE_COUNT[kind], 3))
+    for k in range(PIECE_COUNT[kind]):
+        west, south = length(PIECES[kind, k, 0], shape), length(PIECES[kind, k, 1], shape)
+        east, north = length(PIECES[kind, k, 2], shape), length(PIECES[kind, k, 3], shape)
+        _rectangle_lines(shape, west, south, east, north, lines, 8 * k)
     return lines
 
 

@@ -16,14 +16,11 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Floats
 from utak.geometry.kernels.jit import compiled
-from utak.geometry.shapes.candidates import initial_steps
+from utak.geometry.shapes.candidates import HAS_ARMS, HAS_HEIGHT, HAS_STEM, TURNS, initial_steps
+from utak.geometry.shapes.classes import DISC, TRIANGLE
 from utak.geometry.shapes.misfit import (
-    BRICK_CLASS,
-    DISC_CLASS,
-    ELL_CLASS,
+    FORM,
     PARAMETER_COUNT,
-    SQUARE_CLASS,
-    TRIANGLE_CLASS,
     Image,
     class_violation,
     count_wrong_squares,
@@ -51,7 +48,7 @@ class ParameterVolume(NamedTuple):
 def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
     """Return the volume of the parameters about a shape that gets at most so many squares of an image wrong."""
     free = initial_steps(kind)
-    if kind == ELL_CLASS and shape[6] != 0.0:
+    if HAS_STEM[kind] and shape[6] != 0.0:
         free[6] = free[5]
     mean, volume = _sample_volume(kind, shape, image, wrong, free, _random_numbers())
     return ParameterVolume(mean, math.log(volume) + _log_density(kind, bool(free[6])))
@@ -59,16 +56,12 @@ def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> Para
 
 def _log_density(kind: int, uneven: bool) -> float:
     """Return the log density of a class in its numbers, all that stand for one shape taken together."""
-    if kind == DISC_CLASS:
+    if FORM[kind] == DISC:
         return -math.log(SIZE_RANGE / 2)
-    if kind == TRIANGLE_CLASS:
+    if FORM[kind] == TRIANGLE:
         return math.log(6.0) - 4.0 * math.log(CORNER_RANGE)
-    turned = -math.log(2.0 * math.pi)
-    if kind == SQUARE_CLASS:
-        return turned + math.log(4.0 / SIZE_RANGE)
-    if kind == BRICK_CLASS:
-        return turned + math.log(4.0 / SIZE_RANGE**2)
-    return turned - math.log(SIZE_RANGE**2 * WIDTH_RANGE ** (1 + uneven))
+    ranges = SIZE_RANGE ** (1 + HAS_HEIGHT[kind]) * WIDTH_RANGE ** (HAS_ARMS[kind] + uneven)
+    return -math.log(2.0 * math.pi) - math.log(ranges * TURNS[kind] / 4.0)
 
 
 @cache

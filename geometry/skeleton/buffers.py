@@ -64,7 +64,6 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
 
 def populate(array: NDArray[Any], advise: Adviser | None) -> None:
     """Ask the system to provide the memory of an array at once, which is faster than page by page as it is written."""
-    # None where there is none.
     if advise is not None and MIN_POPULATED_BYTES <= array.nbytes < MAX_POPULATED_BYTES:
         begin = array.ctypes.data
         first = begin - begin % PAGE_BYTES

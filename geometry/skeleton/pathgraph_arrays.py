@@ -1,4 +1,4 @@
-"""The pathgraph in arrays: places and clearances of nodes, ends, lengths and points of edges, and who is adjacent.
+"""The pathgraph in arrays: places and clearances of nodes, ends, lengths and points of edges.
 
 The contracted skeleton (graph.py) knows the cells of nodes and the lowest cell of each chain. One pass over it walks
 every chain again and writes the places of its cells straight into one block of points.
@@ -42,15 +42,6 @@ class PathgraphArrays(NamedTuple):
         included.
     offsets : (m + 1,) int32
         Rows of ``points``: those of edge e are ``points[offsets[e]:offsets[e + 1]]``.
-    narrowest : (m,) int32
-        Row of ``points`` at which each edge has its least clearance.
-    adjacency_offsets : (n + 1,) int32
-        Adjacency in compressed sparse rows: the edges at node v are
-        ``incident_edges[adjacency_offsets[v]:adjacency_offsets[v + 1]]``.
-    incident_edges : (2 m,) int32
-        Numbers of the edges at each node, ascending; a loop is listed twice.
-    neighbours : (2 m,) int32
-        The node at the other end of each of ``incident_edges``.
 
     Examples
     --------
@@ -66,10 +57,8 @@ class PathgraphArrays(NamedTuple):
     >>> graph.points_of(0).tolist()[:4]
     [[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [2.5, 1.5]]
 
-    Degrees of all nodes, and edges with room for a body of radius 0.6, without a loop:
+    Edges with room for a body of radius 0.6:
 
-    >>> np.diff(graph.adjacency_offsets).tolist()
-    [2]
     >>> np.flatnonzero(graph.edge_clearances >= 0.6).tolist()
     []
     """
@@ -81,10 +70,6 @@ class PathgraphArrays(NamedTuple):
     edge_clearances: Floats
     points: Floats
     offsets: Ints
-    narrowest: Ints
-    adjacency_offsets: Ints
-    incident_edges: Ints
-    neighbours: Ints
 
     def points_of(self, edge: int) -> Floats:
         """Return the points of an edge as a view.
@@ -115,14 +100,10 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
         edge_clearances=np.empty(m),
         points=np.empty((offsets.item(m), 2)),
         offsets=offsets,
-        narrowest=np.empty(m, np.int32),
-        adjacency_offsets=np.zeros(n + 2, np.int32),
-        incident_edges=np.empty(2 * m, np.int32),
-        neighbours=np.empty(2 * m, np.int32),
     )
     arrays: Any = graph
     fill_arrays(square.reshape(-1), state.reshape(-1), state.shape[1], *bones, *arrays)
-    return graph._replace(adjacency_offsets=graph.adjacency_offsets[:-1])
+    return graph
 
 
 @bare
@@ -141,18 +122,13 @@ def fill_arrays(
     edge_clearances: Floats,
     points: Floats,
     offsets: Ints,
-    narrowest: Ints,
-    adjacency_offsets: Ints,
-    incident_edges: Ints,
-    neighbours: Ints,
 ) -> None:
     """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``."""
     fill_nodes(heights, width, node, nodes, node_clearances)
     for edge in range(port.shape[0]):
         edges[edge, 0], edges[edge, 1], lengths[edge] = port[edge, 0] >> 2, port[edge, 1] >> 2, steps[edge]
         edge_clearances[edge] = 0.5 * np.sqrt(float(heights[lowest[edge]]))
-    fill_points(states, width, node, port, lowest, nodes, offsets, points, narrowest)
-    fill_adjacency(edges, adjacency_offsets, incident_edges, neighbours)
+    fill_points(states, width, node, port, nodes, offsets, points)
 
 
 @bare
@@ -170,44 +146,18 @@ def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearanc
 
 @bare
 def fill_points(
-    states: Flags,
-    width: int,
-    node: Ints,
-    port: Ints,
-    lowest: Ints,
-    nodes: Floats,
-    offsets: Ints,
-    points: Floats,
-    narrowest: Ints,
+    states: Flags, width: int, node: Ints, port: Ints, nodes: Floats, offsets: Ints, points: Floats
 ) -> None:
-    """Walk every chain from its first end and fill ``points`` and ``narrowest``."""
+    """Walk every chain from its first end and fill ``points``."""
     for edge in range(port.shape[0]):
-        first, low = port[edge, 0] >> 2, int(lowest[edge])
+        first = port[edge, 0] >> 2
         cell, way, x, y = int(node[first]), 1 << (port[edge, 0] & 3), nodes[first, 0], nodes[first, 1]
         begin, end = int(offsets[edge]), int(offsets[edge + 1])
         points[begin, 0], points[begin, 1] = x, y
-        found = begin if cell == low else -1
         for k in range(begin + 1, end):
             east, north = (way & 1) - (way >> 2 & 1), (way >> 1 & 1) - (way >> 3)
             cell += east + north * width
             x += east
             y += north
             points[k, 0], points[k, 1] = x, y
-            found = k if cell == low and found < 0 else found
             way = int(states[cell]) & LINKS ^ (way >> 2 | (way & 3) << 2)
-        narrowest[edge] = found
-
-
-@bare
-def fill_adjacency(edges: Ints, offsets: Ints, incident: Ints, neighbours: Ints) -> None:
-    """Sort the ends of edges by node, and fill ``offsets``, ``incident`` and ``neighbours``."""
-    for edge in range(edges.shape[0]):
-        for side in range(2):
-            offsets[edges[edge, side] + 2] += 1
-    for k in range(2, offsets.shape[0]):
-        offsets[k] += offsets[k - 1]
-    for edge in range(edges.shape[0]):
-        for side in range(2):
-            k = offsets[edges[edge, side] + 1]
-            incident[k], neighbours[k] = edge, edges[edge, 1 - side]
-            offsets[edges[edge, side] + 1] = k + 1

@@ -5,8 +5,7 @@ order fall into groups along its ring of eight neighbours; a group counts when i
 without a higher edge neighbour is a maximum (summit), one with two groups or more a saddle. Clearance has no interior
 minimum, so by discrete Morse theory (Forman 1998) maxima - sum of (groups - 1) over saddles = components - holes of the
 free space, connected through edges. From each saddle one steepest ascent leads up per group, until it meets an earlier
-one. The union has the homotopy type of free space, and so has its part at or above any level, which is free space for a
-body of that radius.
+one. The union has the homotopy type of free space.
 
 Rows are classified and climbed in bands from the north, while they are in the processor's cache. An ascent that leads
 south out of the rows done so far waits at the last of them.
@@ -79,7 +78,6 @@ def grow(
     states: Flags,
     words: Words,
     width: int,
-    level: int,
     south: int,
     north: int,
     flags: States,
@@ -88,7 +86,7 @@ def grow(
 ) -> int:
     """Classify rows from ``north`` down to ``south``, link the ascents from their saddles, and return how many wait."""
     for row in range(south, north + 1):
-        classify(heights, states, width, level, row, flags)
+        classify(heights, states, width, row, flags)
     first, last, left = south * width, (north + 1) * width, 0
     for k in range(waits):
         waiting[left] = climb(0 + waiting[k], SOUTH, heights, states, width, first)
@@ -109,11 +107,11 @@ def grow(
 
 
 @bare
-def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
+def classify(heights: Heights, states: Flags, width: int, row: int, flags: States) -> None:
     """Clear the states of a row and set SADDLE or SUMMIT in those of its saddles and summits."""
     first = row * width
     out = states[first : first + width]
-    find_flags(heights, width, first + 1, level, flags[: width - 2])
+    find_flags(heights, width, first + 1, flags[: width - 2])
     out[0] = 0
     out[width - 1] = 0
     for j in range(width - 2):
@@ -121,9 +119,9 @@ def classify(heights: Heights, states: Flags, width: int, level: int, row: int, 
 
 
 @bare
-def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flags) -> None:
+def find_flags(heights: Heights, width: int, first: int, flags: Flags) -> None:
     """Fill ``flags`` for as many cells of a row from ``first`` on: SADDLE, SUMMIT or 0."""
-    size, least = flags.shape[0] + 2, heights.dtype.type(level)
+    size, least = flags.shape[0] + 2, heights.dtype.type(1)
     below, here = heights[first - width - 1 : first - width - 1 + size], heights[first - 1 : first - 1 + size]
     above = heights[first + width - 1 : first + width - 1 + size]
     for j in range(size - 2):  # from 0, so that no index can count from the end

@@ -16,6 +16,14 @@ from utak.geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Wor
 BAND_CELLS = 1 << 16  # about so many cells in a band: of 3 to 5 bytes each, which fit into a core's own cache
 
 
+def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[States, Words]:
+    """Return a skeleton `state` of that padded shape, and the same memory as words of eight cells."""
+    cells = shape[0] * shape[1]
+    if words is None:
+        words = np.zeros((cells + 7) // 8, np.uint64)
+    return words.view(np.uint8)[:cells].reshape(shape), words
+
+
 def survey(free: Bools, square: SquaredDistances, state: States, words: Words, band_cells: int = BAND_CELLS) -> None:
     """Measure the clearance of all free squares and find their skeleton."""
     width, steps = square.shape[1], square.view(np.int16)
@@ -24,14 +32,6 @@ def survey(free: Bools, square: SquaredDistances, state: States, words: Words, b
     flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
     flat = square.reshape(-1), state.reshape(-1), words
     sweep(square, steps, *flat, max(1, band_cells // width), new_row_window(width), flags, waiting)
-
-
-def grow_all(square: SquaredDistances, level: int, state: States, words: Words) -> None:
-    """Find the skeleton of the cells whose squared clearance is at least ``level``."""
-    width, level = square.shape[1], min(level, int(np.iinfo(square.dtype).max))
-    state[0], state[-1] = 0, 0
-    flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
-    grow(square.reshape(-1), state.reshape(-1), words, width, level, 1, len(square) - 2, flags, waiting, 0)
 
 
 @bare
@@ -53,5 +53,5 @@ def sweep(
         south = north - band + 1 if north > band else 1
         edge = south - 1 if south > 1 else 1
         fill_distance_rows(square, steps, edge, measured - 1, window)
-        waits = grow(heights, states, words, width, 1, south, north, flags, waiting, waits)
+        waits = grow(heights, states, words, width, south, north, flags, waiting, waits)
         measured = edge

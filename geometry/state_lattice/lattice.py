@@ -14,7 +14,6 @@ from utak.geometry.kernels.jit import compiled
 from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
 
 Costs = npt.NDArray[np.int32]
-PushCosts = npt.NDArray[np.int8]  # of single squares, which are small
 # Costs are whole numbers. COMMAND_COST is a convention, the others are tuned on random worlds (benchmarks.campaign).
 COMMAND_COST = 500  # one command: a push or a turn
 PUSH_SIDE_COST, PUSH_DIAGONAL_COST = 5, 7  # a push by one square; 7 / 5 approximates sqrt(2)
@@ -40,7 +39,7 @@ class StateLattice(NamedTuple):
     grasp_cost: Costs  # (n,) cost of a grasp at each hold; -1 where the hold is not to be used
     # (4, 8, squares) by quarter turn and direction, the cost of a push by one square from a place; 0 where it is
     # blocked
-    push_cost: PushCosts
+    push_cost: Costs
     robot_can_step: Bools  # (8, squares) bool, whether the robot itself can make the step from a square
     lies: Bools  # (4, squares) bool, whether the body can lie at a place
     covered: OffsetLists  # by quarter turn, offsets of the squares of the body from its place
@@ -89,7 +88,6 @@ class Grid(NamedTuple):
 
     def clear(self, solid: Bools, offsets: Longs) -> Bools:
         """Return at which squares of the table none of the offsets (n,) is solid."""
-        # (squares,) bool, False off the table.
         found, clear, size = self.padded(np.ones((self.rows, self.columns), np.bool_), False), ~solid, len(solid)
         for offset in offsets.tolist():  # what lies off the ends of the array is further off the table
             here, there = slice(max(0, -offset), size - max(0, offset)), slice(max(0, offset), size + min(0, offset))
@@ -134,7 +132,7 @@ class LatticeFloor(NamedTuple):
 
     solid: Bools  # as in StateLattice
     lies: Bools
-    push_cost: PushCosts
+    push_cost: Costs
     robot_can_step: Bools
 
 
@@ -206,9 +204,9 @@ def _push_costs(
     body: OffsetLists,
     wide: OffsetLists,
     with_margin: bool,
-) -> PushCosts:
-    """Return StateLattice.push_cost: (4, 8, squares) int8, the cost of a push by one square; 0 where it is blocked."""
-    push_cost = np.zeros((4, 8, len(solid)), np.int8)
+) -> Costs:
+    """Return StateLattice.push_cost: (4, 8, squares) int32, the cost of a push by one square; 0 where it is blocked."""
+    push_cost = np.zeros((4, 8, len(solid)), np.int32)
     for k in range(4):
         for place in table_squares:
             if not lies[k, place]:

@@ -11,14 +11,15 @@ from utak.kb.explanation.query_absence import explain_query_absence
 from utak.kb.explanation.values import Absence
 from utak.kb.explanation.whynot import explain_absence
 from utak.kb.language.atoms import atom_parts
-from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, ROBOT, Signature
+from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.goal_words import ROBOT
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from utak.kb.tracing.decisions import SolverCall
 
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
 SURE_KIND = {"object": 95, "verge": 99, "floor": 100, "utak": 100}  # percent: the surest that interpretation.lp derives
 SURE_SHAPE = {"rectangle": 98, "polygon": 99}  # percent: likewise by shapes.lp
-SURE_CLASS = 62  # percent: a class of shapes that fits best and is not ahead, by shapes.lp
+SURE_CLASS = 98  # percent: likewise, a class that leaves no other within three squares of misfit
 
 
 class AbsenceExplainer:
@@ -71,11 +72,14 @@ class AbsenceExplainer:
             atom = f"kind({now.regions[arguments[0]]},{arguments[1]},{confidence})"
             yield from self._calls("interpretation", atom, step)
         elif name == "shape" and len(arguments) == 3 and f"node({arguments[0]})" in now.fact_set:
-            confidence = _number_or(arguments[2], SURE_SHAPE.get(arguments[1], SURE_CLASS))
-            atom = f"shape({arguments[0]},{arguments[1]},{confidence})"
-            call, number = self._newest("shapes", step, f"fit({arguments[0]},")
+            node, shape = arguments[:2]
+            call, number = self._newest("shapes", step, f"fit({node},")
+            found = [atom_parts(atom)[1] for atom in call.answer or () if atom.startswith(f"shape({node},")]
+            likeliest = max((int(percent) for _, other, percent in found if other not in SURE_SHAPE), default=0)
+            # With any confidence: with that of the likeliest class, so that it takes its place; all may be refuted.
+            sure = SURE_SHAPE.get(shape, likeliest or SURE_CLASS)
             if call.facts:
-                yield call, atom, number
+                yield call, f"shape({node},{shape},{_number_or(arguments[2], sure)})", number
         elif name == "bound" and len(arguments) == 2:
             yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
         elif name in ("door", "connects", "width") and f"door({arguments[0]})" not in now.fact_set:
@@ -92,24 +96,20 @@ class AbsenceExplainer:
 
     def _calls(self, encoding: str, atom: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answers of an encoding at a step, the newest first."""
-        for call in reversed(self._facts.record.decisions(step)):
-            if call.encoding == encoding:
-                yield call, atom, step
+        yield from ((call, atom, step) for _, call in self._facts.record.answers(step, encoding, step))
 
     def _newest(self, encoding: str, step: int, needs: str) -> tuple[SolverCall, int]:
         """Return the newest answer of an encoding up to a step whose facts have one that begins with `needs`."""
-        # Its step.
-        for number in range(step, self._facts.record.steps[step].first_impression - 1, -1):
-            calls: Sequence[SolverCall] = self._facts.record.decisions(number)
-            told = [one for one in calls if one.encoding == encoding and any(f.startswith(needs) for f in one.facts)]
-            if told:
-                return told[-1], number
+        oldest = self._facts.record.steps[step].first_impression
+        for number, call in self._facts.record.answers(step, encoding, oldest):
+            if any(fact.startswith(needs) for fact in call.facts):
+                return call, number
         return SolverCall(encoding, (), (), ()), step
 
     def _opening(self, step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answer of rooms.lp with the neck that comes nearest to being a door and is none."""
-        for call in reversed(self._facts.record.decisions(step)):
-            for atom in call.answer or () if call.encoding == "rooms" else ():
+        for _, call in self._facts.record.answers(step, "rooms", step):
+            for atom in call.answer or ():
                 name, arguments = atom_parts(atom)
                 if name == "opening":
                     neck = next(fact for fact in call.facts if fact.startswith(f"neck({arguments[0]},"))
@@ -117,8 +117,8 @@ class AbsenceExplainer:
 
     def _corner(self, arguments: Sequence[str], step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answer of corners.lp, if there is a convex corner at the place that is not the furthest."""
-        for call in reversed(self._facts.record.decisions(step)):
-            for fact in call.facts if call.encoding == "corners" else ():
+        for _, call in self._facts.record.answers(step, "corners", step):
+            for fact in call.facts:
                 number, *place = atom_parts(fact)[1]
                 if place == list(arguments[1:]):
                     yield call, f"furthest({arguments[0]},{number})", step
@@ -211,4 +211,4 @@ def _number_or(text: str, default: int) -> int:
 
 def _error(text: str, what: str) -> BadInputError:
     """Return the error `what` about a question."""
-    return BadInputError([Problem("whynot", SourceSpan(1, 1, max(1, len(text))), what, text)])
+    return BadInputError.about("whynot", text, what)

@@ -16,8 +16,9 @@ from utak.kb.evidence.witness import (
     seen_reason,
 )
 from utak.kb.language.atoms import atom_parts
-from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from utak.kb.language.vocabulary import ROBOT, thing_positions
+from utak.kb.language.diagnostics import BadInputError, did_you_mean
+from utak.kb.language.goal_words import ROBOT
+from utak.kb.language.vocabulary import thing_positions
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
@@ -59,10 +60,7 @@ class FactExplainer:
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
         """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it."""
         found = self.record.last_answer(step, encoding, atom, oldest)
-        if found is None:
-            return None
-        at, call = found
-        return self.prove(call, atom, at)
+        return None if found is None else self.prove(found[1], atom, found[0])
 
     def prove(self, call: SolverCall, atom: str, step: int) -> Reason:
         """Return the reason of an atom of an answer that was given at a step, with the reasons of its inputs."""
@@ -71,9 +69,17 @@ class FactExplainer:
             """Return the reason of an input of the encoding."""
             if call.encoding == PLAN_ENCODING and given.startswith("may_mean("):
                 return self._possible_meaning(given, step)
-            return input_reason(self.record, Given(given, call, step), self.reason)
+            made = self._agenda_with(given, step) if call.encoding == PLAN_ENCODING else None
+            if made is not None and given in (made.answer or ()):
+                return self.prove(made, given, step)
+            return input_reason(self.record, Given(given, made or call, step), self.reason)
 
         return self._prove(call, atom, leaf)
+
+    def _agenda_with(self, given: str, step: int) -> SolverCall | None:
+        """Return the choice of the agenda that has what the task plan was given, such as what S is stuck with."""
+        asked = (call for call in self.record.decisions(step) if call.encoding == "agenda")
+        return next((call for call in asked if given in (*call.facts, *(call.answer or ()))), None)
 
     def _below(self, fact: str, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return what a believed fact rests on."""
@@ -113,7 +119,7 @@ class FactExplainer:
         """Return why a parameter means a node: by reconciliation, and by the task plan where that chose."""
         atom = f"bind({parameter},{node})"
         found = [self.decision("reconciliation", atom, step)]
-        bound = self.record.last_answer(step, "reconciliation", atom, 0)
+        bound = self.record.last_answer(step, "reconciliation", atom)
         if bound is not None and f"planned({parameter},{node})" in bound[1].facts:
             found.append(self.decision(PLAN_ENCODING, f"meaning({parameter},{node})", step))
         return [reason for reason in found if reason is not None]
@@ -181,27 +187,21 @@ class FactExplainer:
             return self._facts([f"link({arguments[0]},", f"threshold({arguments[1]},"], step)
         door = arguments[0]
         ends = self.record.steps[step].necks.get(door)
-        for number in range(step, -1, -1):
-            for call in reversed(self.record.decisions(number)):
-                if call.encoding != "rooms" or ends is None:
-                    continue
-                for atom in call.answer or ():
-                    kind, (neck, *_) = atom_parts(atom)
-                    if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == list(ends):
-                        return [self.prove(call, atom, number)]
+        for number, call in self.record.answers(step, "rooms") if ends is not None else ():
+            for atom in call.answer or ():
+                kind, (neck, *_) = atom_parts(atom)
+                if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == ends:
+                    return [self.prove(call, atom, number)]
         return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a corner is the furthest one: the answer of corners.lp with its place."""
         side, east, north = arguments
-        for number in range(step, -1, -1):
-            for call in reversed(self.record.decisions(number)):
-                if call.encoding != "corners":
-                    continue
-                for atom in call.answer or ():
-                    kind, parts = atom_parts(atom)
-                    if kind == "furthest" and parts[0] == side and f"convex({parts[1]},{east},{north})" in call.facts:
-                        return [self.prove(call, atom, number)]
+        for number, call in self.record.answers(step, "corners"):
+            for atom in call.answer or ():
+                kind, parts = atom_parts(atom)
+                if kind == "furthest" and parts[0] == side and f"convex({parts[1]},{east},{north})" in call.facts:
+                    return [self.prove(call, atom, number)]
         return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _movable_reasons(self, node: str, confidence: str, step: int) -> list[Reason]:
@@ -236,8 +236,8 @@ class FactExplainer:
 
     def _pose_reason(self, step: int) -> Reason:
         """Return why the robot believes itself where it does: the explanation of its newest impression."""
-        for call in reversed(self.record.decisions(step)):
-            if call.encoding == "accommodation" and call.answer:
+        for _, call in self.record.answers(step, "accommodation", step):
+            if call.answer:
                 return self.prove(call, call.answer[0], step)
         now = self.record.steps[step]
         counts = {letter: now.status.count(letter) for letter in "pen"}
@@ -265,8 +265,7 @@ class FactExplainer:
         name, _ = atom_parts(fact)
         near = did_you_mean(fact, [other for other in self.record.steps[step].facts if other.startswith(f"{name}(")])
         hint = near or "whynot tells what is missing"
-        span = SourceSpan(1, 1, max(1, len(fact)))
-        return BadInputError([Problem("why", span, f"this is not believed at step {step}", fact, hint)])
+        return BadInputError.about("why", fact, f"this is not believed at step {step}", hint)
 
 
 def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:

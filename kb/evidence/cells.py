@@ -1,5 +1,6 @@
 """The account of each of the 160 cells of an impression: predicted by the map, explained by a fact, or noise."""
 
+from utak.geometry.counts.retina import FIELDS, OWN_FIELD
 from utak.geometry.kernels.arrays import Square
 from utak.kb.evidence.beliefs import FactExplainer
 from utak.kb.evidence.reason import Reason, ReasonKind
@@ -7,7 +8,6 @@ from utak.kb.evidence.record import Record
 from utak.kb.evidence.sightings import REACH, cells_by_offset, sightings
 from utak.kb.evidence.witness import SHOWN_CELLS, command_reason, node_squares
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from utak.kb.perception.retina import FIELDS, OWN_FIELD
 
 
 def explain_cell(beliefs: FactExplainer, cell: int, step: int) -> Reason:

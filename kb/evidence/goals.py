@@ -1,7 +1,7 @@
 """Reasons for goals, commands and verdicts: the facts that they are about, and the decisions that led to them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from utak.kb.evidence.beliefs import FactExplainer
@@ -9,8 +9,7 @@ from utak.kb.evidence.plans import plan_step_reasons
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.witness import command_reason
 from utak.kb.language.atoms import atom_parts
-from utak.kb.language.vocabulary import ROBOT, check_goal_table
-from utak.kb.task.task import WRAPPING_GOALS
+from utak.kb.language.goal_words import GOAL_WORDS, PLACE_FACTS, ROBOT, WRAPPING_GOALS
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import ROOT_NODE
 
@@ -23,21 +22,6 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     "feel": ("feel", "this halt was chosen to feel walls"),
     "boldness": ("take", "this manipulation plan was taken"),
 }
-PLACES = ("offset({0},", "rect({0},")  # the facts that say where a node is
-ROOMS = ("in({0},", "connects(", "width(")  # the facts that say in which room a node is, and how rooms hang together
-GOAL_FACTS = {  # goal -> the facts that decide it, {0} for the node of its first argument, {1} for that of its second
-    "at": (*PLACES, "rect({1},", "corner({1},"),
-    "in": ROOMS,
-    "through": ROOMS,
-    "around": PLACES,
-    "circled": ("offset({0},", "rect({1},"),
-    "beside": ("rect({0},", "rect({1},"),
-    "pose": PLACES,
-    "not_through": ROOMS,
-    "avoid": PLACES,
-    "carry_nothing_through": ("connects(", "width("),
-}
-check_goal_table(GOAL_FACTS, "GOAL_FACTS in kb/evidence/goals.py")
 
 
 @dataclass(frozen=True)
@@ -76,7 +60,8 @@ def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
     if name in WRAPPING_GOALS:
         name, arguments = atom_parts(arguments[0])
     facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
-    below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
+    now = (reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
+    below = (*now, *_began(beliefs, name, arguments, step))
     says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
     return Reason(goal, says, ReasonKind.INPUT if below else ReasonKind.TASK, "the task", below)
 
@@ -92,11 +77,22 @@ def _meant(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Itera
     yield from (f"bound({argument},{bound[argument]})" for argument in arguments if argument in bound)
 
 
+def _began(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[Reason]:
+    """Yield where the thing of a goal was first believed to lie before a step, where the goal depends on that."""
+    node = _node(beliefs, arguments[0], step) if arguments else ""
+    if name in GOAL_WORDS and GOAL_WORDS[name].from_origin and node not in ("", ROOT_NODE):
+        steps = beliefs.record.steps[:step]
+        places = ((one.number, fact) for one in steps for fact in one.facts if fact.startswith(f"offset({node},"))
+        number, fact = next(places, (step, ""))
+        if reason := beliefs.reason(fact, number):
+            yield replace(reason, because=f"the goal depends on where {node} was at first: {reason.because}")
+
+
 def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[str]:
     """Yield the believed facts that decide a goal."""
     now = beliefs.record.steps[step]
-    nodes = [_node(beliefs, argument, step) for argument in (*arguments, "", "")][:2]
-    for form in GOAL_FACTS.get(name, PLACES):
+    nodes = [_node(beliefs, argument, step) for argument in (*arguments, "", "")]
+    for form in GOAL_WORDS[name].facts if name in GOAL_WORDS else PLACE_FACTS:  # a damaged episode has any name
         start = form.format(*nodes)
         if "(," not in start:
             yield from (fact for fact in now.facts if fact.startswith(start))
@@ -116,10 +112,7 @@ def _ruled_verdicts(beliefs: FactExplainer, claim: str, step: int) -> Iterator[R
     """Yield the reason that the agenda has for a verdict at a step: what each activity came to; nothing without it."""
     asked = [call for call in beliefs.record.decisions(step) if call.encoding == AGENDA]
     if asked and claim in (asked[-1].answer or ()):
-        found = beliefs.prove(asked[-1], claim, step)
-        yield Reason(
-            found.claim, "the agenda ends with this verdict", found.kind, found.source, found.rests_on, found.data
-        )
+        yield replace(beliefs.prove(asked[-1], claim, step), because="the agenda ends with this verdict")
 
 
 def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
@@ -132,10 +125,7 @@ def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
         predicate, words = CHOICES[encoding]
         for atom in call.answer or ():
             if atom_parts(atom)[0] == predicate:
-                found = beliefs.prove(call, atom, step)
-                yield Reason(
-                    found.claim, _about(call, atom) or words, found.kind, found.source, found.rests_on, found.data
-                )
+                yield replace(beliefs.prove(call, atom, step), because=_about(call, atom) or words)
 
 
 def _about(call: SolverCall, atom: str) -> str:

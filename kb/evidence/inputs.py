@@ -12,6 +12,7 @@ from utak.kb.language.atoms import atom_parts
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
+FactReason = Callable[[str, int], Reason | None]  # from a fact and a step to its reason; None when it is not believed
 TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "kept"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
     "candidate": "kind({0},object,{1})",
@@ -24,9 +25,7 @@ DECIDED_INPUTS = frozenset({
     "missing", "unclear", "waits", "stuck", "came_to", "holds", "thing", "goal", "bound_before", "planned",
     "given_up", "not_through",
 })  # fmt: skip
-PARAMETER_INPUTS = frozenset(
-    {"bound_before", "planned", "given_up"}
-)  # of a parameter and a node, from earlier decisions
+PARAMETER_INPUTS = frozenset({"bound_before", "planned", "given_up"})  # a parameter and a node, decided before
 WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # given to `task` as facts
 
 
@@ -38,7 +37,7 @@ class Given(NamedTuple):
     step: int  # the step whose beliefs the decision was about
 
 
-def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int], Reason | None]) -> Reason:
+def input_reason(record: Record, given: Given, fact_reason: FactReason) -> Reason:
     """Return the reason why an encoding was given an atom, down to cells, touches, commands or the task."""
     name, arguments = atom_parts(given.atom)
     says = words_of(given.call.encoding, given.atom)
@@ -48,7 +47,7 @@ def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int],
     if name in TASK_INPUTS:
         return Reason(given.atom, says, ReasonKind.TASK, "the task")
     below = [*_below(record, given, name, arguments, fact_reason)]
-    decided = given.call.encoding == "agenda" or name in DECIDED_INPUTS
+    decided = given.call.encoding == "agenda" or name in DECIDED_INPUTS | WORLD_INPUTS  # no fact: it is supposed
     kind = ReasonKind.INPUT if below else ReasonKind.DECIDED if decided else ReasonKind.MEASURED
     return Reason(given.atom, says, kind, f"step {given.step}", tuple(below), _data(given, arguments))
 
@@ -62,11 +61,7 @@ def _data(given: Given, arguments: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _below(
-    record: Record,
-    given: Given,
-    name: str,
-    arguments: tuple[str, ...],
-    fact_reason: Callable[[str, int], Reason | None],
+    record: Record, given: Given, name: str, arguments: tuple[str, ...], fact_reason: FactReason
 ) -> list[Reason]:
     """Return the reasons of an input; [] when it rests on nothing that is recorded."""
     step, encoding = given.step, given.call.encoding
@@ -102,14 +97,11 @@ def _region_reasons(record: Record, step: int, name: str, arguments: tuple[str, 
 
 def _node_of(record: Record, step: int, region: str) -> str:
     """Return the node that a region is; the verge or the floor for regions that are no objects."""
-    now = record.steps[step]
-    for node, other in now.regions.items():
-        if other == region:
-            return node
-    for call in reversed(record.decisions(step)):
-        if call.encoding == "interpretation":
-            return FLOOR_NODE if any(fact.startswith(f"region({region},zero,") for fact in call.facts) else VERGE_NODE
-    return VERGE_NODE
+    known = next((node for node, other in record.steps[step].regions.items() if other == region), None)
+    if known is not None:
+        return known
+    facts = next((call.facts for _, call in record.answers(step, "interpretation", step)), ())
+    return FLOOR_NODE if any(fact.startswith(f"region({region},zero,") for fact in facts) else VERGE_NODE
 
 
 def _named(node: str) -> str:
@@ -128,7 +120,7 @@ def _neck_reasons(record: Record, given: Given, arguments: tuple[str, ...]) -> l
     now, ends = record.steps[given.step], given.call.about[int(arguments[0])]
     (west, south), (east, north) = ends
     between = line_squares(now, (west, south), (east, north), 0.0)
-    walls = [_beyond(record, given.step, near, far) for near, far in ((ends[0], ends[1]), (ends[1], ends[0]))]
+    walls = [_beyond(record, given.step, near, far) for near, far in (ends, ends[::-1])]
     width = int(arguments[1]) / FACT_UNITS_PER_SQUARE
     passage = Reason(
         f"the passage from ({west:g}, {south:g}) to ({east:g}, {north:g}) is {width:.2f} squares wide",
@@ -166,11 +158,7 @@ def _corner_reasons(record: Record, step: int, arguments: tuple[str, ...]) -> li
 
 
 def _plan_reasons(
-    record: Record,
-    given: Given,
-    name: str,
-    arguments: tuple[str, ...],
-    fact_reason: Callable[[str, int], Reason | None],
+    record: Record, given: Given, name: str, arguments: tuple[str, ...], fact_reason: FactReason
 ) -> list[Reason]:
     """Return the reasons of a fact that `task` is given: facts of the world model; [] for what geometry measured."""
     facts: list[str] = []
@@ -182,9 +170,8 @@ def _plan_reasons(
         facts = [f"in({ROOT_NODE if arguments[0] == 'utak' else arguments[0]},{arguments[2]})"]
     found = [fact_reason(fact, given.step) for fact in facts]
     if name == "goal" and not any(found):  # no plan attains all goals, so the facts name none
-        return [
-            Reason(about, "", ReasonKind.TASK, "the task") for about in given.call.about if _names(about, arguments)
-        ]
+        stated = [about for about in given.call.about if _names(about, arguments)]
+        return [Reason(about, "", ReasonKind.TASK, "the task") for about in stated]
     return [reason for reason in found if reason is not None]
 
 
@@ -194,11 +181,7 @@ def _names(about: Any, arguments: tuple[str, ...]) -> bool:
 
 
 def _property_reasons(
-    record: Record,
-    step: int,
-    name: str,
-    arguments: tuple[str, ...],
-    fact_reason: Callable[[str, int], Reason | None],
+    record: Record, step: int, name: str, arguments: tuple[str, ...], fact_reason: FactReason
 ) -> list[Reason]:
     """Return the reasons of what reconciliation.lp is given of a node: facts of the world model, or cells."""
     node = arguments[1] if name in PARAMETER_INPUTS else arguments[0]

@@ -7,9 +7,10 @@ from utak.kb.evidence.proving import words_of
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
 from utak.kb.language.atoms import atom_parts
-from utak.kb.language.vocabulary import PLAN_PREDICATES, ROBOT
+from utak.kb.language.goal_words import ROBOT
+from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_STEPS
 from utak.kb.tracing.decisions import SolverCall
-from utak.kb.world.stated_plan import SETTLING_WORDS, circumstance_in_words, stated_plan
+from utak.kb.world.stated_plan import circumstance_in_words, stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
@@ -119,7 +120,7 @@ def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Itera
     """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it."""
     facts = beliefs.record.steps[step].facts
     action, arguments = atom_parts(planned)
-    if action in SETTLING_WORDS:
+    if action in SETTLING_STEPS:
         yield from _refutations_of_goal(beliefs, arguments[0], step)
         return
     thing = _brought(planned)
@@ -183,11 +184,7 @@ def planned_choice(record: Record, number: str, planned: str, step: int) -> Iter
 
 def _decision(record: Record, step: int) -> tuple[int, SolverCall] | None:
     """Return the newest decision of the encoding `task` up to a step, with its step; None when there is none."""
-    for number in range(step, -1, -1):
-        for call in reversed(record.decisions(number)):
-            if call.encoding == PLAN_ENCODING and call.answer is not None:
-                return number, call
-    return None
+    return next((found for found in record.answers(step, PLAN_ENCODING) if found[1].answer is not None), None)
 
 
 def _made_at(record: Record, step: int) -> int:

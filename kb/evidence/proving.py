@@ -9,8 +9,8 @@ from utak.kb.explanation.programs import decision_program
 from utak.kb.explanation.proof import explain_decision
 from utak.kb.explanation.values import ProofNode, RivalChoice
 from utak.kb.explanation.wording import atom_words
-from utak.kb.language.diagnostics import Problem, SourceSpan, did_you_mean
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature
+from utak.kb.language.diagnostics import Problem, SourceSpan
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature, hint_for
 from utak.kb.reasoning.user_rules import read_rules
 from utak.kb.tracing.decisions import SolverCall
 
@@ -71,16 +71,11 @@ def unknown_predicate(text: str, signature: Signature, rule_files: Sequence[str]
     """Return the problem that neither the world model nor users' rules have a predicate. text : the question."""
     name, arity = signature
     named = read_rules(tuple(rule_files)).own_predicates if rule_files else frozenset[Signature]()
-    known = {one for one, _ in (*BELIEF_PREDICATES, *named)}
-    arities = sorted(count for one, count in (*BELIEF_PREDICATES, *named) if one == name)
-    what = f"unknown predicate {name}/{arity}"
-    hint = did_you_mean(name, known - {name})
+    what, hint = f"unknown predicate {name}/{arity}", hint_for(name, {*BELIEF_PREDICATES, *named})
     if signature in named:
         what, hint = f"nothing that was asked so far knows {name}/{arity}", ""
     elif name in GOAL_VOCABULARY:
         what, hint = f"{name} is a word of goals, and this is no goal of the task", "ask about facts of the world model"
-    elif arities:
-        hint = f"{name} has {' or '.join(map(str, arities))} argument{'s' * (arities != [1])}"
     return Problem("why", SourceSpan(1, 1, max(1, len(text))), what, text, hint)
 
 

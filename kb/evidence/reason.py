@@ -50,10 +50,6 @@ class Depth(StrEnum):
     LONG = "long"
 
 
-# Kinds that end a branch of a complete tree.
-LEAF_KINDS = frozenset(ReasonKind) - {ReasonKind.FACT, ReasonKind.RULE, ReasonKind.INPUT}
-
-
 @dataclass(frozen=True)
 class Reason:
     """A claim with its reason."""
@@ -96,10 +92,6 @@ class Reason:
         """Return the tree as indented lines."""
         levels = {Depth.SHORT: 1, Depth.MID: MID_LEVELS, Depth.LONG: MAX_LEVELS}[depth]
         return "\n".join(_lines(self, levels, "", set()))
-
-    def leaves(self) -> Iterator["Reason"]:
-        """Yield the reasons that rest on nothing else."""
-        return (reason for reason in self.walk() if not reason.rests_on)
 
 
 def _lines(reason: Reason, levels: int, indent: str, written: set[tuple[str, str]]) -> Iterator[str]:

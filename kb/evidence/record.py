@@ -1,6 +1,6 @@
 """The record of a run as the robot wrote it: commands, impressions, beliefs and decisions, nothing of the truth."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -151,8 +151,9 @@ class Record:
     def last_answer(self, step: int, encoding: str, atom: str, oldest: int = 0) -> tuple[int, SolverCall] | None:
         """Return the newest answer of an encoding, up to a step, that holds an atom, with the step of its record."""
         # None when no answer holds it.
+        return next((found for found in self.answers(step, encoding, oldest) if atom in (found[1].answer or ())), None)
+
+    def answers(self, step: int, encoding: str, oldest: int = 0) -> Iterator[tuple[int, SolverCall]]:
+        """Yield the answers of an encoding between two steps, the newest first, each with the step of its record."""
         for number in range(step, oldest - 1, -1):
-            for call in reversed(self.decisions(number)):
-                if call.encoding == encoding and call.answer is not None and atom in call.answer:
-                    return number, call
-        return None
+            yield from ((number, call) for call in reversed(self.decisions(number)) if call.encoding == encoding)

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from utak.geometry.counts.retina import FIELDS
 from utak.geometry.kernels.arrays import Ints, Square
 from utak.kb.evidence.record import Record
 from utak.kb.perception.frame import Frame
-from utak.kb.perception.retina import FIELDS
 
 REACH = 25  # squares from the robot's own square within which fields lie, at any angle of the frame: derived, 16 sqrt 2
 

@@ -47,7 +47,7 @@ class RuleUnit(NamedTuple):
 class DecisionProgram:
     """An encoding, with the users' rules that reach it."""
 
-    def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS) -> None:
+    def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float | None = None) -> None:
         self.encoding, self._seconds = encoding, seconds
         path = _path_of(encoding)
         self._users: tuple[Statement, ...] = ()
@@ -68,7 +68,7 @@ class DecisionProgram:
         """Return the response of kb.tracing to a request about this program; ExplanationError when it fails."""
         whole = {**request, "parts": [list(part) for part in self.parts]}
         if self._users or request["task"] in UNBOUNDED_TASKS:
-            seconds = self._seconds if self._users else max(self._seconds, MAX_OWN_SECONDS)
+            seconds = self._seconds or (MAX_RULE_SECONDS if self._users else MAX_OWN_SECONDS)
             found = rules_worker().exchange({"trace": whole}, seconds)
             if "limit" in found:
                 raise ExplanationError(f"the explanation was given up: {found['limit']}")
@@ -90,7 +90,6 @@ class DecisionProgram:
 
 def decision_program(encoding: str, rule_files: tuple[str, ...] = ()) -> DecisionProgram:
     """Return an encoding with the users' rules that reach it; the same object while no file changes."""
-    # Raises what `DecisionProgram` does.
     return _kept_program(encoding, rule_files, texts_of(rule_files))
 
 
@@ -125,12 +124,6 @@ def _refuse_helping_names(names: Sequence[str]) -> None:
 def encoding_names() -> tuple[str, ...]:
     """Return the names of all encodings, sorted."""
     return tuple(path.stem for path in all_encodings())
-
-
-def rules_of(encoding: str) -> tuple[RuleText, ...]:
-    """Return the rules of one of our encodings with their sentences, in order; ExplanationError for an unknown name."""
-    own = [unit.rule for unit in decision_program(encoding).units if unit.rule.file != QUERY_PARTS[0].file]
-    return tuple(dict.fromkeys(own))
 
 
 def _path_of(encoding: str) -> Path:

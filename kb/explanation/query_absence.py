@@ -6,10 +6,11 @@ from itertools import count
 from utak.kb.explanation.belief import explain_query_atom, query_response
 from utak.kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
 from utak.kb.explanation.values import Absence, Proof
-from utak.kb.explanation.whynot import change_in_words, is_sensible
+from utak.kb.explanation.whynot import change_in_words, least_change
 from utak.kb.language.diagnostics import SourceSpan
+from utak.kb.language.goal_words import CORNER_NAMES
 from utak.kb.language.terms import Number, Symbol, Term
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, CORNER_NAMES, SHAPE_CLASSES
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, SHAPE_CLASSES
 
 NUMBERED_LETTERS = "odrjl"  # of objects, doors, rooms, junctions and links, which have a number behind them
 
@@ -22,10 +23,7 @@ def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[
     if answer == "yes":
         raise ExplanationError(f"{wanted} certainly holds by what is believed")
     program = decision_program(BELIEF, files)
-    request = {"facts": list(given), "atom": wanted}
-    candidates = program.ask({**request, "task": "candidates", "known": [*given, *_possible_atoms(given)]})
-    candidates["facts"] = [fact for fact in candidates["facts"] if is_sensible(BELIEF, fact)]
-    found = program.ask({**request, "task": "change", "candidates": candidates})
+    found = least_change(program, given, wanted, [*given, *_possible_atoms(given)])
     missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
     proof = _proof_after(given, missing, in_way, wanted, files) if found["found"] else None
     start = f"{wanted} does not hold" if answer == "no" else f"whether {wanted} holds is not known"
@@ -39,8 +37,8 @@ def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[
     else:
         sentence = f"{start}; it would if {change_in_words(program, given, missing, in_way, 'believed')}."
     if proof is None:
-        return Absence(BELIEF, wanted, (), (), bool(candidates["cut"]) or found["found"], False, sentence)
-    partial = not found["least"] or (bool(candidates["cut"]) and len(missing) + len(in_way) > 1)
+        return Absence(BELIEF, wanted, (), (), bool(found["cut"]) or found["found"], False, sentence)
+    partial = not found["least"] or (bool(found["cut"]) and len(missing) + len(in_way) > 1)
     return Absence(BELIEF, wanted, missing, in_way, partial, True, sentence, None, proof)
 
 

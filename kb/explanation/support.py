@@ -80,7 +80,7 @@ def _raise_levels(
     ready: list[tuple[str, int]] = []
     for atom in sorted(wanted - heights.keys()):
         for index, support in enumerate(supports.get(atom, ())):
-            needed = set(_all_needed(support))
+            needed = set(needed_atoms(support, support.elements))
             key = (atom, index)
             size[key], left[key] = len(needed), len(needed - heights.keys())
             for other in needed - heights.keys():
@@ -110,57 +110,48 @@ def positive_atoms(literals: Iterable[LiteralValue], infos: Iterable[JsonValues]
             yield value
 
 
-def element_atoms(one: CountedElement, info: JsonValues) -> Iterator[str]:
-    """Yield the atoms on which the condition of an element rests."""
-    yield from positive_atoms(one.condition, info["conditions"][one.element])
+def needed_atoms(support: Support, counted: Iterable[Sequence[CountedElement]]) -> Iterator[str]:
+    """Yield the atoms that an instance reads without negation, for each of its literals those of some elements."""
+    yield from positive_atoms(support.literals, support.unit.literals)
+    if support.condition:
+        yield from positive_atoms(support.condition, support.unit.conditions[support.head_element])
+    for info, elements in zip(support.unit.literals, counted, strict=True):
+        for one in elements:
+            yield from positive_atoms(one.condition, info["conditions"][one.element])
+            if info["kind"] == "conditional":
+                yield from positive_atoms(one.terms, [info["literal"]])
 
 
 def _best_at_least(options: Sequence[Support], heights: Mapping[str, int]) -> Support | None:
     """Return the first instance that holds by atoms that have heights, aggregates by a part of their elements."""
     for support in options:
-        needed = _needed_at_least(support, heights)
-        if needed is not None and all(atom in heights for atom in needed):
+        ready = founded_elements(support, heights)
+        if _keeps_bounds(support, ready) and all(atom in heights for atom in needed_atoms(support, ready)):
             return support
     return None
 
 
-def _all_needed(support: Support) -> Iterator[str]:
-    """Yield all atoms that hold and that the body and the condition of an instance read without negation."""
-    yield from positive_atoms(support.literals, support.unit.literals)
-    if support.condition:
-        yield from positive_atoms(support.condition, support.unit.conditions[support.head_element])
-    for info, elements in zip(support.unit.literals, support.elements, strict=True):
-        for one in elements:
-            yield from element_atoms(one, info)
-            if info["kind"] == "conditional":
-                yield from positive_atoms(one.terms, [info["literal"]])
-
-
-def _needed_at_least(support: Support, heights: Mapping[str, int]) -> Iterable[str] | None:
-    """Return the atoms that suffice for an instance, given those that have heights; None when they do not suffice."""
-    found = list(positive_atoms(support.literals, support.unit.literals))
-    if support.condition:
-        found += positive_atoms(support.condition, support.unit.conditions[support.head_element])
-    for value, info, elements in zip(support.literals, support.unit.literals, support.elements, strict=True):
-        ready = founded_elements(info, elements, heights)
-        if info["kind"] == "aggregate" and not info["negated"] and not holds_aggregate(info, value, ready):
-            return None
-        for one in ready:
-            found += element_atoms(one, info)
-            if info["kind"] == "conditional":
-                found += positive_atoms(one.terms, [info["literal"]])
-    return found
+def _keeps_bounds(support: Support, counted: Iterable[Sequence[CountedElement]]) -> bool:
+    """Return whether the aggregates of an instance that are not negated hold by some of their elements alone."""
+    parts = zip(support.literals, support.unit.literals, counted, strict=True)
+    return all(
+        info["kind"] != "aggregate" or info["negated"] or holds_aggregate(info, value, elements)
+        for value, info, elements in parts
+    )
 
 
 def founded_elements(
-    info: JsonValues, elements: Iterable[CountedElement], heights: Mapping[str, int], below: int | None = None
-) -> tuple[CountedElement, ...]:
-    """Return the elements whose atoms all have heights; with `below`, heights less than that."""
-    return tuple(
-        one
-        for one in elements
-        if all(atom in heights and (below is None or heights[atom] < below) for atom in element_atoms(one, info))
-    )
+    support: Support, heights: Mapping[str, int], below: int | None = None
+) -> list[list[CountedElement]]:
+    """Return for each literal the elements whose conditions have heights; with `below`, heights less than that."""
+
+    def is_founded(one: CountedElement, info: JsonValues) -> bool:
+        """Return whether all atoms of an element's condition have such heights."""
+        atoms = positive_atoms(one.condition, info["conditions"][one.element])
+        return all(atom in heights and (below is None or heights[atom] < below) for atom in atoms)
+
+    pairs = zip(support.unit.literals, support.elements, strict=True)
+    return [[one for one in elements if is_founded(one, info)] for info, elements in pairs]
 
 
 def aggregate_value(info: JsonValues, elements: Iterable[CountedElement]) -> str:

@@ -6,10 +6,9 @@ from utak.kb.explanation.support import (
     CountedElement,
     LiteralValue,
     Support,
-    element_atoms,
     founded_elements,
     founded_supports,
-    positive_atoms,
+    needed_atoms,
 )
 from utak.kb.explanation.values import ProofNode, RivalChoice, RuleInstance
 from utak.kb.explanation.wording import (
@@ -68,14 +67,7 @@ class ProofTrees:
         support = self._chosen.get(atom)
         if support is None:
             return
-        yield from positive_atoms(support.literals, support.unit.literals)
-        if support.condition:
-            yield from positive_atoms(support.condition, support.unit.conditions[support.head_element])
-        for info, elements in zip(support.unit.literals, support.elements, strict=True):
-            for one in founded_elements(info, elements, self._heights, self._heights[atom]):
-                yield from element_atoms(one, info)
-                if info["kind"] == "conditional":
-                    yield from positive_atoms(one.terms, [info["literal"]])
+        yield from needed_atoms(support, founded_elements(support, self._heights, self._heights[atom]))
 
     def _built(self, atom: str) -> ProofNode:
         """Return the proof of an atom whose parts have been built."""
@@ -91,14 +83,16 @@ class ProofTrees:
     def _children(self, atom: str, support: Support) -> Iterator[ProofNode]:
         """Yield the parts of the body of the rule instance that explains an atom."""
         values = dict(zip(support.unit.names, support.values, strict=True))
-        parts = zip(support.literals, support.unit.literals, support.elements, strict=True)
-        for value, info, elements in parts:
-            ready = founded_elements(info, elements, self._heights, self._heights[atom])
-            yield from self._literal(value, info, ready, values)
+        ready = founded_elements(support, self._heights, self._heights[atom])
+        for value, info, elements in zip(support.literals, support.unit.literals, ready, strict=True):
+            yield from self._literal(value, info, elements, values)
         if support.condition:
-            infos = support.unit.conditions[support.head_element]
-            for value, info in zip(support.condition, infos, strict=True):
-                yield from self._literal(value, info, (), None)
+            yield from self._conditions(support.condition, support.unit.conditions[support.head_element])
+
+    def _conditions(self, values: Iterable[LiteralValue], infos: Iterable[JsonValues]) -> Iterator[ProofNode]:
+        """Yield the nodes of the literals of a condition."""
+        for value, info in zip(values, infos, strict=True):
+            yield from self._literal(value, info, (), None)
 
     def _literal(
         self,
@@ -134,12 +128,7 @@ class ProofTrees:
     def _members(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
         """Yield a node for each element that counts in an aggregate; that of its only atom when it has one."""
         for one in elements:
-            infos = info["conditions"][one.element]
-            parts = [
-                node
-                for value, inner in zip(one.condition, infos, strict=True)
-                for node in self._literal(value, inner, (), None)
-            ]
+            parts = [*self._conditions(one.condition, info["conditions"][one.element])]
             if len(parts) == 1:
                 yield parts[0]
             else:
@@ -150,11 +139,6 @@ class ProofTrees:
         """Yield a node for each case of a conditional literal: its literal, with its condition below."""
         for one in elements:
             (literal,) = self._literal(one.terms[0], info["literal"], (), None)
-            infos = info["conditions"][one.element]
-            parts = [
-                node
-                for value, inner in zip(one.condition, infos, strict=True)
-                for node in self._literal(value, inner, (), None)
-            ]
+            parts = [*self._conditions(one.condition, info["conditions"][one.element])]
             below = (literal,) if literal.children or literal.instance else ()
             yield ProofNode("each", literal.claim, literal.words, children=(*parts, *below))

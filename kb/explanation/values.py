@@ -1,8 +1,6 @@
 """The parts of explanations: frozen values that JSON can hold."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
 
 
 @dataclass(frozen=True)
@@ -25,11 +23,6 @@ class RuleInstance:
     values: tuple[tuple[str, str], ...]  # (name, value) of each variable that the rule names
     sentence: str  # its sentence with these values, or the text of the rule when it has none
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return the instance as JSON values: file, line, column, rule, values, sentence."""
-        place = {"file": self.rule.file, "line": self.rule.line, "column": self.rule.column}
-        return place | {"rule": self.rule.text, "values": dict(self.values), "sentence": self.sentence}
-
 
 @dataclass(frozen=True)
 class Price:
@@ -38,10 +31,6 @@ class Price:
     level: int  # the level of priority; a higher level decides first
     weight: int  # the price, in the units of the encoding
     instance: RuleInstance  # the weak constraint with its values
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the price as JSON values: level, weight, and those of the instance."""
-        return {"level": self.level, "weight": self.weight} | self.instance.as_dict()
 
 
 @dataclass(frozen=True)
@@ -59,21 +48,6 @@ class RivalChoice:
     forbidden_by: tuple[RuleInstance, ...]  # the constraints that no answer with this choice can keep
     sentence: str  # all this in one sentence
     proved: bool = True  # whether the search for the best answer with this choice was complete
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the rival as JSON values, under the names of the attributes."""
-        return {
-            "atom": self.atom,
-            "verdict": self.verdict,
-            "costs": [list(cost) for cost in self.costs],
-            "level": self.level,
-            "difference": self.difference,
-            "prices": [price.as_dict() for price in self.prices],
-            "saved": [price.as_dict() for price in self.saved],
-            "forbidden_by": [one.as_dict() for one in self.forbidden_by],
-            "sentence": self.sentence,
-            "proved": self.proved,
-        }
 
 
 @dataclass(frozen=True)
@@ -95,17 +69,6 @@ class ProofNode:
     def sentence(self) -> str:
         """The reason: the sentence of the rule, or the claim in plain words when no rule derives it."""
         return self.instance.sentence if self.instance else self.words
-
-    def walk(self) -> "Iterator[ProofNode]":
-        """Yield this node and all nodes below it, each claim once, a node before its children."""
-        seen: set[int] = set()
-        waiting = [self]
-        while waiting:
-            node = waiting.pop()
-            if id(node) not in seen:
-                seen.add(id(node))
-                yield node
-                waiting += reversed(node.children)
 
 
 @dataclass(frozen=True)

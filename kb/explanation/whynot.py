@@ -10,6 +10,9 @@ from utak.kb.explanation.wording import absent_words, atom_words
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.reader import facts_from_text
 from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
+from utak.kb.tracing.syntax import JsonValues
+
+PAST_FACTS = ("done", "lay")  # of planner/asp/task/history.lp: what was done would not be done by other circumstances
 
 
 def explain_absence(
@@ -34,23 +37,29 @@ def explain_absence(
         options = decision.supports.get(wanted, ())
         if any(one.unit.rule.kind == "choice" for one in options):
             rival = next(iter(rivals_of(program, given, shown, [wanted], with_none=False)), None)
-    request = {"facts": list(given), "atom": wanted}
-    candidates = program.ask({**request, "task": "candidates", "known": list(known)})
-    candidates["facts"] = [fact for fact in candidates["facts"] if is_sensible(encoding, fact)]
-    found = program.ask({**request, "task": "change", "candidates": candidates})
+    found = least_change(program, given, wanted, known)
     missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
     is_single = bool(found["found"]) and len(missing) + len(in_way) <= 1
-    partial = not found["least"] or (candidates["cut"] and not is_single)
+    partial = not found["least"] or (found["cut"] and not is_single)
     proof = _proof_after(program, given, missing, in_way, wanted) if found["found"] else None
     sentence = _sentence(program, wanted, _otherwise(wanted, known), given, missing, in_way, found["found"])
     return Absence(encoding, wanted, missing, in_way, partial, found["found"], sentence, rival, proof)
 
 
-def is_sensible(encoding: str, fact: str) -> bool:
-    """Return whether the arguments of a candidate fact are of the types that the encoding's vocabulary declares."""
+def least_change(program: DecisionProgram, given: Sequence[str], wanted: str, known: Sequence[str]) -> JsonValues:
+    """Return the least change with which an atom holds, and whether candidates for it were `cut`, as JSON values."""
+    request = {"facts": list(given), "atom": wanted}
+    candidates = program.ask({**request, "task": "candidates", "known": list(known)})
+    candidates["facts"] = [fact for fact in candidates["facts"] if _is_sensible(program.encoding, fact)]
+    return {**program.ask({**request, "task": "change", "candidates": candidates}), "cut": candidates["cut"]}
+
+
+def _is_sensible(encoding: str, fact: str) -> bool:
+    """Return whether a candidate fact is not of the past, and its arguments are of the types that are declared."""
     (one,) = facts_from_text(f"{fact}.")
     types = USER_RULE_INTERFACES.get(encoding, {}).get(one.signature)
-    return types is None or all(type_.check(term) is None for type_, term in zip(types, one.args, strict=True))
+    fits = types is None or all(type_.check(term) is None for type_, term in zip(types, one.args, strict=True))
+    return fits and one.name not in PAST_FACTS
 
 
 def _proof_after(

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from utak.kb.explanation.support import CountedElement, LiteralValue, aggregate_value
 from utak.kb.language.atoms import atom_parts
 from utak.kb.reasoning.sentences import PredicateWords, fill
+from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS
 from utak.kb.tracing.syntax import ANY_NAME, JsonValues
 
 WordsByPredicate = Mapping[tuple[str, int], PredicateWords]
 SIGN_WORDS = {
     "=": "is", "!=": "is not", "<": "is less than", "<=": "is at most", ">": "is more than", ">=": "is at least",
 }  # fmt: skip
-MIRRORED = {"=": "=", "!=": "!=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
 AGGREGATE_WORDS = {
     "#count": "the number of", "#sum": "the sum of", "#sum+": "the sum of the positive ones of",
     "#min": "the least of", "#max": "the greatest of",
@@ -108,7 +108,7 @@ def aggregate_words(info: JsonValues, bounds: Sequence[str], elements: Sequence[
     limits = []
     for side, sign in enumerate(info["signs"]):
         if sign:
-            bound, word = next(terms), MIRRORED[sign] if side == 0 else sign
+            bound, word = next(terms), MIRRORED_SIGNS[sign] if side == 0 else sign
             limits += [] if (word, bound) == ("=", value) else [f"which {SIGN_WORDS[word]} {bound}"]
     text = f"{AGGREGATE_WORDS[info['function']]} {listed} is {value}"
     return ("not so: " if info["negated"] else "") + ", ".join([text, *limits])

@@ -10,6 +10,7 @@ atoms             atoms as text, taken apart
 reader            the reader of fact files
 wkt               the reader of shapes (well-known text)
 arguments         argument types: checks of single terms
+goal_words        the conditions that goals state, one row for each
 vocabulary        the predicates of each kind of fact file and of the world model
 integers          the check for integers beyond 32 bits
 operating_system  process limits, file locks and other features that some systems lack

@@ -25,6 +25,7 @@ class ArgumentType(NamedTuple):
     check: Callable[[Term], Complaint | None]  # returns the complaint about a term, or None when the term fits
     # (least, greatest) integer that fits; None for an argument that is no integer
     limits: tuple[int, int] | None = None
+    words: tuple[str, ...] = ()  # all with which what fits begins, where these are some words
 
 
 def abbreviated(term: Term) -> str:
@@ -35,7 +36,6 @@ def abbreviated(term: Term) -> str:
 
 def integer_argument(name: str, low: int, high: int) -> ArgumentType:
     """Return the type of integers from `low` to `high`, both included."""
-    # It holds the name, a check that returns the complaint about a term (None when the term fits), and the limits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is an integer in the range."""
@@ -50,7 +50,6 @@ def integer_argument(name: str, low: int, high: int) -> ArgumentType:
 
 def decimal_argument(name: str, low: float, high: float) -> ArgumentType:
     """Return the type of numbers from `low` to `high`, both included: integers, or quoted decimals such as "0.5"."""
-    # It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is a number in the range."""
@@ -71,9 +70,14 @@ def decimal_value(term: Term) -> float:
     return float(term.value)
 
 
+def text_value(term: Term) -> str:
+    """Return the text that a term states, a quoted one."""
+    assert isinstance(term, Text)
+    return term.value
+
+
 def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
     """Return the type of the names in `known`: no other name fits."""
-    # It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
     words = tuple(known)
 
     def check(term: Term) -> Complaint | None:
@@ -83,7 +87,7 @@ def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
         hint = did_you_mean(str(term).strip('"').lower(), words) or f"one of {', '.join(words)}"
         return Complaint(term.span, f"unknown {name} {abbreviated(term)}", hint)
 
-    return ArgumentType(name, check)
+    return ArgumentType(name, check, words=words)
 
 
 def _check_name(term: Term) -> Complaint | None:
@@ -103,7 +107,6 @@ def _check_colour(term: Term) -> Complaint | None:
 
 def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
     """Return the type of the names that match a regular expression as a whole, such as o1 for `o[0-9]+`."""
-    # It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
     form = re.compile(pattern)
 
     def check(term: Term) -> Complaint | None:
@@ -117,7 +120,6 @@ def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
 
 def wkt_argument(name: str, *kinds: str) -> ArgumentType:
     """Return the type of quoted shapes in well-known text, coordinates in squares."""
-    # None when the term fits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it is a quoted shape of an accepted kind."""

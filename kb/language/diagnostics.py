@@ -47,6 +47,16 @@ class BadInputError(Exception):
         self.problems = tuple(problems)
         super().__init__(format_problems(self.problems))
 
+    @classmethod
+    def at(cls, file: str, what: str, hint: str = "", line: int = 1, column: int = 1) -> "BadInputError":
+        """Return, not raise, one error at a place of a file whose text is not shown."""
+        return cls([Problem(file, SourceSpan(line, column, column), what, hint=hint)])
+
+    @classmethod
+    def about(cls, file: str, text: str, what: str, hint: str = "") -> "BadInputError":
+        """Return, not raise, one error about a whole text of one line, which is shown."""
+        return cls([Problem(file, SourceSpan(1, 1, max(1, len(text))), what, text, hint)])
+
 
 class CannotOpenError(Exception):
     """A user's file cannot be opened or read."""

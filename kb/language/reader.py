@@ -205,9 +205,7 @@ class _Reader:
         if token.text == ":-":
             return self.refuse(token, "a rule; a fact file holds facts alone", "remove everything from :- on")
         if token.text in (",", ";", "|", ":"):
-            return self.refuse(
-                token, f"a fact ends in a full stop, not in {token.in_words}", "write one fact at a time"
-            )
+            return self.refuse(token, f"one fact at a time, and no {token.in_words} after it", "end it in a full stop")
         if token.kind == "name" and fact.name == "not":
             return self.refuse(token, "a negated fact; state only what holds")
         return self.refuse(token, f"a full stop was expected after the fact, {token.in_words} found")

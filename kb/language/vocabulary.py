@@ -1,6 +1,6 @@
 """The predicates of fact files and of the world model, with the types of their arguments (docs/files.md)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -17,20 +17,20 @@ from utak.kb.language.arguments import (
     word_argument,
 )
 from utak.kb.language.diagnostics import Problem, did_you_mean
+from utak.kb.language.goal_words import CORNER_ARGUMENT, CORNER_NAMES, DEGREES_ARGUMENT, GOAL_WORDS, ROBOT
 from utak.kb.language.source_text import Source
 from utak.kb.language.terms import Fact, Symbol, Term
 
 Signature = tuple[str, int]  # the name of a predicate and its number of arguments
 Vocabulary = Mapping[str, tuple[ArgumentType, ...]]  # argument types by predicate
 
-# The shape classes of objects (docs/files.md).
-SHAPE_CLASSES = ("square", "brick", "rectangle", "l_shape", "t_shape", "u_shape", "triangle", "disc", "polygon")
-CORNER_NAMES = ("northeast", "northwest", "southeast", "southwest")  # in Utak's frame (docs/files.md)
-ROBOT = "utak"  # the robot in tasks, in plans and in questions
+# The shape classes of objects (docs/files.md): those of geometry/shapes/classes.py, and unions of them.
+OUTLINE_CLASSES = ("square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc")
+SHAPE_CLASSES = (*OUTLINE_CLASSES, "rectangle", "polygon")
 # Words of goals that cannot name parameters.
 RESERVED_PARAMETER_NAMES = frozenset({ROBOT, "start", "next", "corner", "room", "verge", *CORNER_NAMES})
-DEGREES_ARGUMENT = integer_argument("an angle in degrees", -36000, 36000)  # counter-clockwise positive
 MAX_TABLE_SIDE = 4096  # squares along each side of a table (docs/files.md)
+MAX_SIZE = 10_000  # squares that a thing may be said to cover; a convention
 
 # The predicates of world.lp.
 WORLD_VOCABULARY: Vocabulary = {
@@ -45,29 +45,8 @@ WORLD_VOCABULARY: Vocabulary = {
 }
 
 
-def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
-    """Return the type of a name or of `name(argument)`, such as corner(northeast)."""
-    # It holds a name for messages, and a check that returns the complaint about a term, or None when the term fits.
-
-    def check(term: Term) -> Complaint | None:
-        """Return the complaint about a term, or None when it fits."""
-        if not isinstance(term, Symbol) or not term.args:
-            return NAME_ARGUMENT.check(term)
-        if term.name != name:
-            hint = did_you_mean(term.name, [name]) or f"such as {name}({otherwise})"
-            return Complaint(term.span, f"unknown place {abbreviated(term)}", hint)
-        if len(term.args) != 1:
-            return Complaint(
-                term.span, f"{name} takes 1 argument, not {len(term.args)}", f"such as {name}({otherwise})"
-            )
-        return argument.check(term.args[0])
-
-    return ArgumentType(f"{name} or name", check)
-
-
 def fact_argument(name: str, vocabulary: Vocabulary) -> ArgumentType:
     """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G)."""
-    # The type holds the name and a check: it returns the first complaint about the fact, or None when it is valid.
 
     def check(term: Term) -> Complaint | None:
         """Return the first complaint about a term, or None when it is a valid fact of the vocabulary."""
@@ -75,7 +54,7 @@ def fact_argument(name: str, vocabulary: Vocabulary) -> ArgumentType:
             return Complaint(term.span, f"{name} must be a fact, not {abbreviated(term)}")
         return next(iter(_complaints(term, vocabulary)), None)
 
-    return ArgumentType(name, check)
+    return ArgumentType(name, check, words=tuple(f"{predicate}(" for predicate in vocabulary))
 
 
 WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # a shape of any kind
@@ -108,11 +87,29 @@ EXPECTATION_VOCABULARY: Vocabulary = {
     "weight": (fact_argument("what is weighed", EXPECTATIONS), integer_argument("a weight", 0, MAX_WEIGHT_POINTS)),
 }
 
-# The claims about objects in start.lp.
-CLAIMS: Vocabulary = {
-    "shape": (NAME_ARGUMENT, word_argument("shape", SHAPE_CLASSES)),
-    "colour": (NAME_ARGUMENT, COLOUR_ARGUMENT),
+
+class ClaimWord(NamedTuple):
+    """A property or relation that start.lp may claim of what the task speaks of."""
+
+    arguments: tuple[ArgumentType, ...]
+    parameters: tuple[tuple[str, ...] | None, ...]  # the kinds of parameters each argument takes; None for no parameter
+    one: bool = True  # whether a thing has one value of it at most
+
+
+_OBJECT, _DOOR, _ROOM = ("object",), ("door",), ("room",)
+# The claims of start.lp: how things, doors and rooms are said to be at first.
+CLAIM_WORDS: Mapping[str, ClaimWord] = {
+    "shape": ClaimWord((NAME_ARGUMENT, word_argument("shape", SHAPE_CLASSES)), (_OBJECT, None)),
+    "colour": ClaimWord((NAME_ARGUMENT, COLOUR_ARGUMENT), (_OBJECT, None)),
+    "size": ClaimWord((NAME_ARGUMENT, integer_argument("a size in squares", 1, MAX_SIZE)), (_OBJECT, None)),
+    "in": ClaimWord(GOAL_WORDS["in"].arguments, (_OBJECT, _ROOM), one=False),
+    "at": ClaimWord((NAME_ARGUMENT, CORNER_ARGUMENT), (_OBJECT, ("corner(northeast)",)), one=False),
+    "beside": ClaimWord((NAME_ARGUMENT, NAME_ARGUMENT), (_OBJECT, _OBJECT), one=False),
+    "against": ClaimWord((NAME_ARGUMENT,), (_OBJECT,), one=False),
+    "width": ClaimWord((NAME_ARGUMENT, decimal_argument("a width in squares", 0, MAX_TABLE_SIDE)), (_DOOR, None)),
+    "connects": ClaimWord((NAME_ARGUMENT,) * 3, (_DOOR, _ROOM, _ROOM), one=False),
 }
+CLAIMS: Vocabulary = {name: word.arguments for name, word in CLAIM_WORDS.items()}
 # The predicates of start.lp.
 START_VOCABULARY: Vocabulary = {
     "object": (NAME_ARGUMENT,),
@@ -122,24 +119,7 @@ START_VOCABULARY: Vocabulary = {
     "confidence": (fact_argument("what is claimed", CLAIMS), integer_argument("a confidence", 0, 100)),
 }
 # The conditions that goals state.
-GOAL_CONDITIONS: Vocabulary = {
-    "at": (NAME_ARGUMENT, _compound("corner", word_argument("corner", CORNER_NAMES), "northeast")),
-    "in": (NAME_ARGUMENT, _compound("room", word_argument("room", ["next"]), "next")),
-    "through": (NAME_ARGUMENT, NAME_ARGUMENT),
-    "around": (NAME_ARGUMENT, word_argument("place", ["corner"])),
-    "circled": (word_argument("walker", ["utak"]), NAME_ARGUMENT),
-    "beside": (NAME_ARGUMENT, NAME_ARGUMENT),
-    "pose": (NAME_ARGUMENT, wkt_argument("a place", "POINT"), DEGREES_ARGUMENT),
-    "not_through": (NAME_ARGUMENT, NAME_ARGUMENT),
-    "avoid": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
-    "carry_nothing_through": (NAME_ARGUMENT,),
-}
-CONSTRAINT_GOALS = (
-    "not_through",
-    "avoid",
-    "carry_nothing_through",
-)  # conditions that hold all the time, not at the end
-TRACK_GOALS = ("circled",)  # goals that a track fulfils, not a place
+GOAL_CONDITIONS: Vocabulary = {name: word.arguments for name, word in GOAL_WORDS.items()}
 MAX_WISH_COMMANDS = 1_000_000  # commands that a wish may cost; a convention
 # The predicates of goal.lp.
 GOAL_VOCABULARY: Vocabulary = {
@@ -151,14 +131,25 @@ GOAL_VOCABULARY: Vocabulary = {
         integer_argument("a number of commands", 0, MAX_WISH_COMMANDS),
     ),
 }
+# By the name of a file of a scenario: the names of its predicates.
+PREDICATES_BY_FILE: Mapping[str, Collection[str]] = {
+    "world.lp": WORLD_VOCABULARY.keys(),
+    "start.lp": START_VOCABULARY.keys(),
+    "goal.lp": GOAL_VOCABULARY.keys(),
+    "expect.lp": EXPECTATION_VOCABULARY.keys(),
+    "trial.lp": ("seed", "noise", "paths", "max_steps", "no_pull", "rules", "asks", "weight"),
+}
 
 
-def check_goal_table(table: Mapping[str, object], place: str) -> None:
-    """Raise LookupError unless a table has a row for each goal word and no other. place : where it is, for messages."""
-    missing, unknown = sorted(GOAL_CONDITIONS.keys() - table.keys()), sorted(table.keys() - GOAL_CONDITIONS.keys())
-    if missing or unknown:
-        what = "lacks the goal words" if missing else "has words that GOAL_CONDITIONS lacks:"
-        raise LookupError(f"{place} {what} {', '.join(missing or unknown)} (see docs/guides/goal_word.md)")
+def hint_for(name: str, known: Collection[Signature]) -> str:
+    """Return the hint what may be meant by a predicate that is not known here; "" for nothing."""
+    # It has another number of arguments, belongs in another file of a scenario, or is misspelt.
+    forms = sorted(f"{other}/{arity}" for other, arity in known if other == name)
+    if forms:
+        return f"there is {', '.join(forms)}"
+    names = {other for other, _ in known}
+    files = [file for file, here in PREDICATES_BY_FILE.items() if name in here and not names <= set(here)]
+    return f"{name} belongs in {' or '.join(files)}" if files else did_you_mean(name, names)
 
 
 class Openness(StrEnum):
@@ -191,6 +182,7 @@ class BeliefPredicate(NamedTuple):
 THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
 # An object of the world model.
 OBJECT_ARGUMENT = pattern_argument("object", "o[0-9]+", "o1")
+MEANT_ARGUMENT = pattern_argument("object, door or room", "[odr][0-9]+", "o1")
 TASK_PARAMETER_ARGUMENT = ArgumentType("parameter of the task", NAME_ARGUMENT.check)  # a name that start.lp introduces
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
@@ -211,7 +203,16 @@ PLANNED_PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
 # What a step of the task plan may settle: the name of a goal, or all, robot, plan.
 PLAN_SUBJECT_ARGUMENT = ArgumentType("what a step settles", NAME_ARGUMENT.check)
 # The steps of the task plan that settle what is open (planner/asp/task/settling.lp).
-SETTLING_STEPS = ("find", "pursue", "pull", "make_way", "try", "feel", "bare")
+SETTLING_STEPS = {  # with what each does, in words; {} is what it settles
+    "find": "what {} is about is looked for",
+    "pursue": "the robot sees how {} can hold",
+    "pull": "a thing that may go on in a wall is drawn out of it, for {}",
+    "make_way": "what blocks the robot's way is moved aside, for {}",
+    "try": "things that may be several are felt all round, and pushed each way where they did not move, for {}",
+    "feel": "walls are felt that may be things, for {}",
+    "bare": "what stands before walls that were never felt is moved away, for {}",
+}
+RESUMED_STEPS = ("make_way", "try", "feel")  # those that are gone on with in later decisions, before anything else
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
@@ -243,6 +244,15 @@ PLAN_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("refuted", 2): BeliefPredicate((PLAN_STEP_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("given", 2): BeliefPredicate((COUNT_ARGUMENT, CIRCUMSTANCE_ARGUMENT), Openness.NEVER),
 }
+TWO_POINTS = (LENGTH_ARGUMENT,) * 4  # (east, north) of one point, then of another
+
+
+def _property(*value: ArgumentType) -> BeliefPredicate:
+    """Return the predicate of a property of objects, with its value and its confidence."""
+    types = (THING_ARGUMENT, *value, CONFIDENCE_ARGUMENT)
+    return BeliefPredicate(types, Openness.UNTOLD, confident=True, settled=NEVER_OBJECTS)
+
+
 # The predicates of the world model (kb/asp/belief.lp), and object/1; by name and number of arguments.
 BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("node", 1): BeliefPredicate((THING_ARGUMENT,), Openness.UNSEEN),
@@ -251,41 +261,19 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("child", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN, subject=1),
     ("offset", 3): BeliefPredicate((THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
     ("held", 1): BeliefPredicate((THING_ARGUMENT,), Openness.NEVER),
-    ("rect", 5): BeliefPredicate(
-        (THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
-    ),
+    ("rect", 5): BeliefPredicate((THING_ARGUMENT, *TWO_POINTS), Openness.UNSEEN),
     ("segment", 7): BeliefPredicate(
-        (
-            THING_ARGUMENT,
-            COUNT_ARGUMENT,
-            LENGTH_ARGUMENT,
-            LENGTH_ARGUMENT,
-            LENGTH_ARGUMENT,
-            LENGTH_ARGUMENT,
-            CONFIDENCE_ARGUMENT,
-        ),
-        Openness.UNSEEN,
-        confident=True,
+        (THING_ARGUMENT, COUNT_ARGUMENT, *TWO_POINTS, CONFIDENCE_ARGUMENT), Openness.UNSEEN, confident=True
     ),
-    ("shape", 3): BeliefPredicate(
-        (THING_ARGUMENT, word_argument("shape", SHAPE_CLASSES), CONFIDENCE_ARGUMENT),
-        Openness.UNTOLD,
-        0,
-        True,
-        NEVER_OBJECTS,
-    ),
-    ("colour", 3): BeliefPredicate(
-        (THING_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.UNTOLD, 0, True, NEVER_OBJECTS
-    ),
-    ("movable", 2): BeliefPredicate((THING_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.UNTOLD, 0, True, NEVER_OBJECTS),
+    ("shape", 3): _property(word_argument("shape", SHAPE_CLASSES)),
+    ("colour", 3): _property(COLOUR_ARGUMENT),
+    ("movable", 2): _property(),
     ("adjacent", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Openness.UNTOLD, settled=frozenset({"org"})),
     ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),
     ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Openness.UNSEEN),
     ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
-    ("threshold", 5): BeliefPredicate(
-        (DOOR_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
-    ),
+    ("threshold", 5): BeliefPredicate((DOOR_ARGUMENT, *TWO_POINTS), Openness.UNSEEN),
     ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("corner", 3): BeliefPredicate(
         (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.NEVER
@@ -299,7 +287,7 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ),
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
     ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
-    ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, OBJECT_ARGUMENT), Openness.UNBOUND),
+    ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, MEANT_ARGUMENT), Openness.UNBOUND),
     **PLAN_PREDICATES,
 }
 
@@ -313,7 +301,6 @@ def thing_positions(signature: Signature) -> frozenset[int]:
 
 def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -> list[Problem]:
     """Return what is wrong with facts against a vocabulary."""
-    # Unknown predicates, wrong numbers and types of arguments.
     return [source.problem(*complaint) for fact in facts for complaint in _complaints(fact, vocabulary)]
 
 
@@ -323,7 +310,7 @@ def _complaints(fact: Fact, vocabulary: Vocabulary) -> list[Complaint]:
     # order.
     types = vocabulary.get(fact.name)
     if types is None:
-        hint = did_you_mean(fact.name, vocabulary) or f"known here: {', '.join(sorted(vocabulary))}"
+        hint = hint_for(fact.name, {(name, 0) for name in vocabulary}) or f"known here: {', '.join(sorted(vocabulary))}"
         return [Complaint(fact.span, f"unknown predicate {fact.name}/{len(fact.args)}", hint)]
     if len(types) != len(fact.args):
         form = f"{fact.name}({', '.join(type_.name for type_ in types)})" if types else fact.name

@@ -77,7 +77,6 @@ def _outcomes(
     contacts: Iterable[ContactHypothesis],
 ) -> list[Explanation]:
     """Return what else may have come of the motion in the believed frame."""
-    # Blocked, stuck, slipped, smaller, and so on.
     ends = contact_outcomes(contacts, state.place, held.polygon, motion)
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
     outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, held.polygon, motion)]

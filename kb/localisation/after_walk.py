@@ -112,9 +112,6 @@ class _WalkExplainer:
 
     def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
         """Return a chosen explanation with what was learnt while choosing it."""
-        # That is the number of slow searches spent so far, and where the walk may have ended by its observation: places
-        # (x, y) in squares, map frame, each with its chance; empty where it can have met nothing.
-        # None when they stay as they are.
         return Judgement(chosen, self._budget.spent, self._possible_ends, left)
 
     def _all(self, first: Explanation, turned: list[Explanation]) -> list[Explanation]:

@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from utak.geometry.counts.retina import FIELDS, MAX_GRAY_LEVEL, OWN_FIELD
 from utak.geometry.kernels.arrays import Square
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import FieldRanges
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
 from utak.kb.perception.frame import Samples
-from utak.kb.perception.retina import FIELDS, MAX_GRAY_LEVEL, OWN_FIELD
 
 FIELD_AREAS = np.array([field.side**2 for field in FIELDS])  # squares under each of the 160 fields
 

@@ -4,13 +4,12 @@ Expensive proposals are made only when cheap ones leave something unexplained. k
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import NamedTuple, TypeVar
 
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
 from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
 from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
-from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from utak.kb.localisation.propose import blocked
 from utak.kb.localisation.propose.earlier_motion import (
@@ -114,35 +113,23 @@ def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) ->
     return found
 
 
-class EarlierMotionProposers(NamedTuple):
-    """The two proposers of earlier motions that ended elsewhere than believed."""
-
-    # Proposes other ends in the believed frame
-    in_frame: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions
-    # Proposes other ends together with another origin of the frame
-    with_origin: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_with_origin
-
-
-EARLIER_MOTION_PROPOSERS = EarlierMotionProposers()  # the ones in use; tests pass others
-
-
 def propose_earlier_motions(
     state: TrackerState,
     surprise: Surprise,
     others: Iterable[Explanation],
     budget: SearchBudget,
-    proposers: EarlierMotionProposers = EARLIER_MOTION_PROPOSERS,
+    reestimate: Callable[..., list[ReestimatedMotion]] = reestimate_motions,
 ) -> list[Explanation]:
     """Return explanations by which an earlier motion ended elsewhere than believed."""
     simple = [other for other in others if is_simple(state, other)]
     here = [other for other in simple if other.frame == state.frame]
     if here:
         known = any(other.chance is not None for other in here)
-        likely = [] if known else [_earlier_motion(state, one) for one in proposers.in_frame(surprise, state.doubtful)]
+        likely = [] if known else [_earlier_motion(state, one) for one in reestimate(surprise, state.doubtful)]
         return [one for one in likely if one.chance is not None]
-    found = proposers.in_frame(surprise, state.earlier)
+    found = reestimate(surprise, state.earlier)
     if not found and not simple:
-        found = budget.search(lambda: proposers.with_origin(surprise, state.earlier))
+        found = budget.search(lambda: reestimate_with_origin(surprise, state.earlier))
     return [_earlier_motion(state, one) for one in found]
 
 

@@ -26,7 +26,6 @@ from utak.kb.perception.frame import CENTRE, Frame
 
 MAX_RESIDUAL = 8  # residual fields of the last observations together from which localisation has failed; tuned
 MAX_RESIDUAL_AFTER_MOVING = 24  # the same once an object was moved, for it may lie elsewhere than believed; tuned
-LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an earlier motion counts as likely; tuned
 
 
 @dataclass(frozen=True)
@@ -157,7 +156,7 @@ class TrackerState:
         """Return whether a motion may well have ended in another square than believed, by the observation after it."""
         if motion.number >= len(self.observations):
             return False
-        places = [self.observations[motion.number].place, *motion.likely_ends(LIKELY_END_CHANCE)]
+        places = [self.observations[motion.number].place, *motion.likely_ends]
         squares = {(math.floor(x), math.floor(y)) for x, y in (self.frame.place_from_utak(*own) for own in places)}
         return len(squares) > 1
 
@@ -192,7 +191,7 @@ class TrackerState:
     @property
     def doubtful(self) -> tuple[MotionHypothesis, ...]:
         """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first."""
-        return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
+        return tuple(motion for motion in self.earlier if motion.likely_ends)
 
     def others(self, held: HeldObject) -> list[HeldObject]:
         """Return all objects that were ever held except the one of the name of `held`, where they lie, map frame."""

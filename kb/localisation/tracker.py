@@ -212,7 +212,6 @@ class Tracker:
 
     def _remember(self, command: Move | Push, name: str | None = None) -> None:
         """Remember a straight motion in `state`, for it may have ended otherwise than believed."""
-        # None for a walk.
         state = self.state
         motion = MotionHypothesis(
             len(state.observations), (command.east, command.north), state.hypotheses, in_hand=name

@@ -25,9 +25,8 @@ COMPLETION_SEED = 20031  # of the random numbers; convention
 FIRST_SCHEDULE = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the first inverse temperature; tuned
 NEXT_SCHEDULE = (30, 1.0)  # likewise over a scene most of which was drawn before; tuned
 INTERIOR_DEPTH = 2  # squares: what is probably occupied, or free, so far from its edge is not drawn; tuned
-INTERIOR_PROBABILITY = (
-    0.93  # from which it is probably occupied: under a field of the last level that may miss a square
-)
+# From which it is probably occupied: under a field of the last level that may miss a square
+INTERIOR_PROBABILITY = 0.93
 START_PROBABILITY = 0.5  # from which a square is occupied in the first sample: more likely than not
 OccupancyImage = NDArray[np.int8]
 SceneKey = tuple[int | bytes, ...]  # all that determines the samples of a scene
@@ -181,7 +180,6 @@ def _joined_labels(near: Components, counts: Counts) -> Labels:
 
 def _interior(mask: Bools, depth: int) -> Bools:
     """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it."""
-    # A mask like it.
     for axis in (0, 1):
         framed = np.pad(mask, [(depth, depth) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
         parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * depth + 1)]

@@ -25,12 +25,8 @@ ABSENCE_EXPONENT = 2  # the share of completions without an object there, to thi
 MAX_OPEN_SIDES = 9  # sides of squares along which an object goes on unseen, at most; along more sides it is a wall
 MAX_DEPTH_RATIO = 1.15  # area of an object by the square of those sides, at most: as wide as long, and a little more
 OBJECT_PROBABILITY = 0.7  # that what keeps within both bounds is an object rather than a wall
-SEEN_PART_PROBABILITY = (
-    (18, 0.5),
-    (12, 0.3),
-    (6, 0.18),
-    (0, 0.02),
-)  # (squares seen at least, that it is the one meant)
+# (squares seen at least, that it is the one meant)
+SEEN_PART_PROBABILITY = ((18, 0.5), (12, 0.3), (6, 0.18), (0, 0.02))
 # The spread of a part (sum of principal moments by squared area) is compared with that of a rectangle. Each tolerance
 # is a constant, and a term that falls with the area of the part.
 WIDER_TOLERANCE = (0.012, 0.03)  # spread above a rectangle's; the second term is for a part of one square
@@ -127,7 +123,6 @@ def _not_slender(ratio: Floats) -> Floats:
 
 def _agreement_at_most(value: Floats, limit: float, tolerance: float) -> Floats:
     """Return 1 for values up to a limit, and less, down to 0, the further a value is above it."""
-    # An array like `value`.
     return _agreement(np.maximum(value - limit, 0.0), tolerance)
 
 

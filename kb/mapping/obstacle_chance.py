@@ -35,7 +35,6 @@ class ObstacleChance:
 
     def _probabilities(self, square: Square) -> Floats:
         """Return the probability that a square (x, y) of the map frame is occupied, by each completion."""
-        # Not yet kept.
         self._occupancy.make_room(*square)
         index = self._occupancy.index(*square)
         state = self._occupancy.state[index]

@@ -30,15 +30,12 @@ from utak.kb.objects.subcell_extent import (
 )
 from utak.kb.perception.frame import Samples
 
-GRID_CORNER_TOLERANCE = (
-    1e-6  # squares: a corner so close to a corner of the grid is taken to be there; rounding of floats
-)
-COMMAND_ROUNDING = (
-    1e-4  # squares: tolerance of an outline that is known exactly, but for the rounding of commands; derived
-)
-MIN_DUBIOUS_FIELDS = (
-    8  # fields that a motion leaves unexplained, from which the object more likely lies elsewhere; tuned
-)
+# Squares: a corner so close to a corner of the grid is taken to be there; rounding of floats
+GRID_CORNER_TOLERANCE = 1e-6
+# Squares: tolerance of an outline that is known exactly, but for the rounding of commands; derived
+COMMAND_ROUNDING = 1e-4
+# Fields that a motion leaves unexplained, from which the object more likely lies elsewhere; tuned
+MIN_DUBIOUS_FIELDS = 8
 OUTLINE_TOLERANCE = 0.3  # squares: how far the true outline may lie from a fitted one off the grid; tuned
 EMPTY_PATCH = Patch(0, 0, np.zeros((1, 1), np.bool_))  # no square
 
@@ -191,7 +188,6 @@ class HeldObject:
 
     def woken(self, far: float) -> "HeldObject":
         """Return the object if the point where the robot woke is known within a distance."""
-        # It bounds the turns' centre.
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "HeldObject":

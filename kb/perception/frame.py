@@ -17,24 +17,16 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from utak.geometry.counts.retina import FIELDS, OWN_FIELD
 from utak.geometry.kernels.arrays import XY, Floats, Ints, Square
 from utak.kb.body import DIRECTIONS
-from utak.kb.perception.retina import FIELDS, OWN_FIELD
 
 Coordinate = TypeVar("Coordinate", float, Floats)
 CENTRE = (0.5, 0.5)  # the centre of square (0, 0), map frame
 SAMPLING_TIE_TOLERANCE = 1e-9  # squares: an offset so near to the line between two squares may be sampled from either
 MAX_SAMPLED_SQUARES = 16  # squares under the largest field: derived, 4 x 4
-ADJACENT_OFFSETS = (
-    (0, 1),
-    (1, 1),
-    (1, 0),
-    (1, -1),
-    (0, -1),
-    (-1, -1),
-    (-1, 0),
-    (-1, 1),
-)  # (east, north) of each of DIRECTIONS
+# (east, north) of each of DIRECTIONS
+ADJACENT_OFFSETS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 
 
 class Samples(NamedTuple):
@@ -59,7 +51,7 @@ class Frame:
     # The origin of the robot frame, in squares, map frame: a point of square (0, 0); its centre (0.5, 0.5) by default.
     origin: XY = CENTRE
 
-    def to_map(self, east: float, north: float) -> XY:
+    def to_map(self, east: Coordinate, north: Coordinate) -> tuple[Coordinate, Coordinate]:
         """Return a vector (east, north) of the robot frame as a vector (x, y) of the map frame, in squares."""
         return turned(east, north, self.angle)
 
@@ -71,14 +63,9 @@ class Frame:
         """Return a point (x, y) of the map frame as a point (east, north) of the robot frame, in squares."""
         return self.to_utak(x - self.origin[0], y - self.origin[1])
 
-    def place_from_utak(self, east: float, north: float) -> XY:
+    def place_from_utak(self, east: Coordinate, north: Coordinate) -> tuple[Coordinate, Coordinate]:
         """Return a point (east, north) of the robot frame as a point (x, y) of the map frame, in squares."""
         x, y = self.to_map(east, north)
-        return x + self.origin[0], y + self.origin[1]
-
-    def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
-        """Return points of the robot frame as points of the map frame."""
-        x, y = turned(east, north, self.angle)
         return x + self.origin[0], y + self.origin[1]
 
     def beside(self, direction: str) -> Square | None:

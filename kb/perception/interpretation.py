@@ -7,7 +7,7 @@ from typing import NamedTuple
 from utak.kb.perception.regions import Percept
 from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
 from utak.kb.reasoning.solver import solve
-from utak.kb.reasoning.user_rules import rules_reach, world_facts_named
+from utak.kb.reasoning.user_rules import predicates_read, rules_reach
 from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
@@ -40,14 +40,14 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
     for region in percept.regions:
         facts.append(f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})")
         facts += [f"extent({region.name},{region.extent})", f"mass({region.name},{region.mass})"]
-        facts += [f"rim({region.name})"] * region.rim + [f"own({region.name})"] * region.own
+        facts += [f"rim({region.name})"] * region.rim
     facts += [f"surrounds({outer},{inner})" for outer, inner in sorted(percept.surrounds)]
     facts += [f"touched({region},{colour})" for region, colour in sorted(set(touched))]
     return facts
 
 
 def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
-    """Decide what every region is: floor, verge, object or utak (the robot itself)."""
+    """Decide what every region is: floor, verge or object."""
     kind: dict[str, dict[str, int]] = {}
     passages = set()
     for atom in solve([INTERPRETATION, *rules], percept_facts(percept, touched)) or ():
@@ -66,7 +66,7 @@ def classify_shapes(
     """Decide which shapes objects have."""
     answer: dict[str, dict[str, int]] = {}
     given = list(facts)
-    named = [fact for fact in world if fact.partition("(")[0] in world_facts_named(SHAPES.stem, rules)]
+    named = [fact for fact in world if fact.partition("(")[0] in predicates_read(SHAPES.stem, rules)]
     atoms = solve([SHAPES, *rules], [*given, *named]) or []
     if rules_reach(SHAPES.stem, rules):
         with record_decisions():  # what rules change is asked, not decided

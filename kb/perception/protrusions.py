@@ -169,7 +169,6 @@ def _felt_beyond(thing: Bools, part: Bools, felt: Mapping[RowColumn, str]) -> bo
 
 def _short_runs(floor: Bools, bounds: Bools) -> Bools:
     """Return the squares of short runs of a row, between floor to the west and floor to the east."""
-    # (rows, columns) bool.
     short = np.zeros_like(bounds)
     for row, start, stop in runs_along_rows(bounds).each():
         inside = start > 0 and stop < bounds.shape[1]

@@ -1,7 +1,6 @@
-"""Regions: maximal edge-connected sets of free or of occupied cells, and which region surrounds which.
+"""Regions: maximal edge-connected sets of free or of occupied squares of the map, and which region surrounds which.
 
-They are formed of the cells of one impression, or of the squares of the map. They become facts for the interpretation
-(kb/asp/interpretation.lp); nothing here decides what a region is.
+They become facts for the interpretation (kb/asp/interpretation.lp); nothing here decides what a region is.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -12,43 +11,26 @@ from numpy.typing import NDArray
 
 from utak.geometry.kernels.arrays import Bools, Labels, Longs
 from utak.geometry.raster.components import bounding_boxes, components
-from utak.kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, neighbours
 
 
 class Region(NamedTuple):
-    """One region: a maximal edge-connected set of free, or occupied, cells of an impression or squares of the map."""
+    """One region: a maximal edge-connected set of free, or of occupied, squares of the map."""
 
-    name: str  # Of a region of the map `part<n>`, n from 1; of one of an impression `cells<n>`, n from 1, or `own`
-    occupied: bool  # Whether it is a region of occupied cells rather than of free ones
+    name: str  # `part<n>`, n from 1
+    occupied: bool  # Whether it is a region of occupied squares rather than of free ones
     certain: int  # Percent of its squares that are surely so, whatever counts the gray levels stand for
     rim: bool  # Whether it touches what was not seen
     extent: int  # The longer side of its containing rectangle, in squares
     mass: int  # The expected number of its occupied squares, in tenths of squares
-    own: bool = False  # Whether it is the cell of the robot's own square
 
 
 class Percept(NamedTuple):
-    """The regions of one impression or of the map."""
+    """The regions of the map."""
 
-    regions: tuple[Region, ...]  # The regions; on the map free ones first
+    regions: tuple[Region, ...]  # The regions, free ones first
     adjacent: frozenset[tuple[str, str]]  # Pairs of names of regions that share an edge, both ways round
     # Pairs of names (outer, inner): no way leads from inner to what was not seen, except across outer
     surrounds: frozenset[tuple[str, str]]
-
-
-def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, frozenset[int]]]:
-    """Return the regions of one impression. The robot's own cell is a region by itself."""
-    cells: dict[str, frozenset[int]] = {"own": frozenset({OWN_FIELD})}
-    left = set(range(len(FIELDS))) - {OWN_FIELD}
-    while left:
-        grown = _grow(min(left), left, levels)
-        cells[f"cells{len(cells)}"] = frozenset(grown)
-        left -= grown
-    owner = {cell: name for name, members in cells.items() for cell in members}
-    touching = {(owner[a], owner[b]) for a in range(len(FIELDS)) for b in neighbours()[a] if owner[a] != owner[b]}
-    ranges = count_ranges(levels)
-    regions = tuple(_cell_region(name, members, levels, ranges) for name, members in cells.items())
-    return _percept(regions, touching), cells
 
 
 def map_regions(
@@ -73,35 +55,17 @@ def map_regions(
     return _percept(regions, touching), labels
 
 
+def region_of(mask: Bools, name: str, sure: Bools, probability: NDArray[np.float32]) -> Region:
+    """Return the region of some occupied squares that lies within what was seen."""
+    rows, columns = np.nonzero(mask)
+    extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
+    mass = round(10 * float(probability[mask].sum()))
+    return Region(name, True, int(100 * sure[mask].sum() // len(rows)), False, extent, mass)
+
+
 def label_of(name: str) -> int:
     """Return the label of a region of the map: n for the name `part<n>`; ValueError for a name of another form."""
     return int(name.removeprefix("part"))
-
-
-def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
-    """Return the numbers of the fields of the region of the cell `first`: those of `among` connected with it."""
-    region, edge = {first}, [first]
-    while edge:
-        for cell in neighbours()[edge.pop()]:
-            if cell in among and cell not in region and (levels[cell] > 0) == (levels[first] > 0):
-                region.add(cell)
-                edge.append(cell)
-    return region
-
-
-def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]) -> Region:
-    """Return the region formed by some cells of an impression."""
-    cells = sorted(members)
-    occupied = levels[cells[0]] > 0
-    area = sum(FIELDS[c].side ** 2 for c in cells)
-    right = sum(int(ranges[c, 0]) if occupied else FIELDS[c].side ** 2 - int(ranges[c, 1]) for c in cells)
-    east = [FIELDS[c].east for c in cells] + [FIELDS[c].east + FIELDS[c].side for c in cells]
-    north = [FIELDS[c].north for c in cells] + [FIELDS[c].north + FIELDS[c].side for c in cells]
-    extent = max(max(east) - min(east), max(north) - min(north))
-    if name == "own":
-        return Region(name, True, 100, False, 1, 10, True)
-    mass = round(5 * float(ranges[cells].sum()))
-    return Region(name, occupied, 100 * right // area, bool(edge_fields() & set(cells)), extent, mass)
 
 
 def extents(labels: Labels, count: int) -> Longs:
@@ -136,11 +100,8 @@ def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Per
 
 def _surrounding(beside: Mapping[str, set[str]], outside: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the pairs (outer, inner) such that no way leads from inner to the outside, except across outer."""
-    open_, order, back = (
-        set(outside),
-        dict[str, int](),
-        dict[str, int](),
-    )  # back: the earliest region reached from the subtree
+    open_, order = set(outside), dict[str, int]()
+    back = dict[str, int]()  # the earliest region reached from the subtree
     for start in sorted(open_):
         path = [(start, iter(sorted(beside[start])))] if start not in order else []
         order.setdefault(start, len(order))

@@ -19,7 +19,7 @@ from utak.geometry.kernels.arrays import Bools, Labels
 from utak.geometry.raster.components import components
 from utak.geometry.raster.runs import runs_along_rows
 from utak.kb.perception.protrusions import MAX_THING_LENGTH, RowColumn
-from utak.kb.perception.regions import Percept, Region, label_of
+from utak.kb.perception.regions import Percept, label_of, region_of
 
 MAX_CUTS = 12  # cuts in one region; a bound on time
 MAX_PAIRED_LINES = 40  # lines of which pairs are tried where no single one parts a region; a bound on time
@@ -242,22 +242,12 @@ def part_mixed_regions(
         parting = part_by_colour(labels == label_of(region.name), there)
         unsettled += parting.unsettled
         first, *others = sorted(parting.parts, key=lambda mask: -int(mask.sum()))
-        regions[index] = _region_of(first, region, certain, probability)
+        regions[index] = region_of(first, region.name, certain, probability)
         for part in others:
             label = int(labels.max()) + 1
             labels[part] = label
-            new = _region_of(part, region._replace(name=f"part{label}"), certain, probability)
+            new = region_of(part, f"part{label}", certain, probability)
             regions.append(new)
             surrounds |= {(outer, new.name) for outer, inner in percept.surrounds if inner == region.name}
     changed = percept._replace(regions=tuple(regions), surrounds=frozenset(surrounds))
     return PartedMap(changed, labels, tuple(unsettled))
-
-
-def _region_of(part: Bools, whole: Region, certain: Bools, probability: NDArray[np.float32]) -> Region:
-    """Return a region of the name and kind of another one that has only the squares of a part."""
-    rows, columns = np.nonzero(part)
-    return whole._replace(
-        certain=int(100 * certain[part].sum() // len(rows)),
-        extent=int(max(np.ptp(rows), np.ptp(columns))) + 1,
-        mass=round(10 * float(probability[part].sum())),
-    )

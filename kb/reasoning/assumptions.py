@@ -9,12 +9,19 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from utak.kb.language.diagnostics import BadInputError, did_you_mean
+from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.integers import integers_beyond_32_bits
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import Source, source_from_bytes
 from utak.kb.language.terms import Fact, Number, Symbol
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts, thing_positions
+from utak.kb.language.vocabulary import (
+    BELIEF_PREDICATES,
+    THING_ARGUMENT,
+    Signature,
+    check_facts,
+    hint_for,
+    thing_positions,
+)
 from utak.kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_THERE, USER_RULE_INTERFACES
 from utak.kb.reasoning.rulebook import (
     INTERFACE_PREDICATES,
@@ -124,10 +131,8 @@ def _require_own_predicate(source: Source, fact: Fact, kb_files: Sequence[str]) 
     if fact.signature in named:
         return
     known = named | INTERFACE_PREDICATES
-    forms = sorted(f"{name}/{arity}" for name, arity in known if name == fact.name)
-    hint = f"there is {', '.join(forms)}" if forms else did_you_mean(fact.name, {name for name, _ in known})
-    what = f"unknown predicate {fact.name}/{len(fact.args)}"
-    raise BadInputError([source.problem(fact.span, what, hint or "docs/reference/vocabulary.md lists all of them")])
+    hint = hint_for(fact.name, known) or "docs/reference/vocabulary.md lists all of them"
+    raise BadInputError([source.problem(fact.span, f"unknown predicate {fact.name}/{len(fact.args)}", hint)])
 
 
 def _guarded(fact: Fact) -> str:

@@ -16,14 +16,15 @@ from utak.kb.language.arguments import (
     pattern_argument,
     word_argument,
 )
+from utak.kb.language.goal_words import CORNER_NAMES
 from utak.kb.language.terms import Symbol, Term
 from utak.kb.language.vocabulary import (
     BELIEF_PREDICATES,
     CONFIDENCE_ARGUMENT,
-    CORNER_NAMES,
     KIND_ARGUMENT,
     LENGTH_ARGUMENT,
     PLAN_PREDICATES,
+    RESUMED_STEPS,
     SETTLING_STEPS,
     SHAPE_CLASSES,
     Signature,
@@ -36,60 +37,58 @@ AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)  # a count, a len
 NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a thing
 
 
-def _name_argument(name: str) -> ArgumentType:
-    """Return the type of plain names (no arguments, no quotes), with its own name for messages."""
-    # The type holds that name, and a check that returns the complaint about a term, or None when the term fits.
-    return ArgumentType(name, NAME_ARGUMENT.check)
-
-
-def _number_argument(name: str) -> ArgumentType:
-    """Return the type of numbers from 0 to `MAX_AMOUNT`, with its own name for messages."""
-    # The type holds that name, a check that returns the complaint about a term, or None when it fits, and the limits.
-    return ArgumentType(name, NUMBER_ARGUMENT.check, NUMBER_ARGUMENT.limits)
-
-
-REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT = (
-    _name_argument(name) for name in ("region", "candidate", "parameter")
+REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT = (
+    NAME_ARGUMENT._replace(name=name) for name in ("region", "candidate", "parameter", "place", "goal")
+)
+PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT, SUBJECT_ARGUMENT = (  # a subject: a goal, all, robot, task, plan or look
+    NAME_ARGUMENT._replace(name=name) for name in ("room", "door", "subject")
+)
+NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
+    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time")
 )
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
-NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT = _number_argument("neck"), _number_argument("convex corner")
-PROPERTY_ARGUMENT = word_argument("property", ("shape", "colour"))  # what claims are about
+PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
+CLAIMED_RELATIONS = ("in", "beside", "joins")  # what claims relate two parameters by
+PROPERTY_ARGUMENT = word_argument("property", PROPERTIES)
+RELATION_ARGUMENT = word_argument("relation", CLAIMED_RELATIONS)
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
 MOVER_ARGUMENT = pattern_argument("thing or utak", "o[0-9]+|utak|start", "o1")  # a thing of the task plan, or the robot
-PLACE_ARGUMENT, GOAL_ARGUMENT = _name_argument("place"), _name_argument("goal")
-PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT = _name_argument("room"), _name_argument("door")
-REFUTATION_ARGUMENT, TIME_ARGUMENT = _number_argument("refutation"), _number_argument("time")
-# The steps of a task plan, with their numbers of arguments.
-PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1} | dict.fromkeys(SETTLING_STEPS, 1)
+Forms = Mapping[str, tuple[ArgumentType, ...]]  # compound terms: the types of their arguments, by name
+# The steps of a task plan.
+PLAN_STEPS: Forms = {
+    **dict.fromkeys(("carry", "clear"), (NODE_ARGUMENT, PLACE_ARGUMENT)),
+    "arrive": (PLACE_ARGUMENT,),
+    "go": (PLAN_DOOR_ARGUMENT,),
+    **dict.fromkeys(SETTLING_STEPS, (SUBJECT_ARGUMENT,)),
+}
 
 
-def _compound_argument(name: str, plural: str, forms: Mapping[str, int]) -> ArgumentType:
+def _compound_argument(name: str, plural: str, forms: Forms) -> ArgumentType:
     """Return the type of terms with one of some names, each with its number of arguments."""
-    # The type holds its own name, and a check that returns the complaint about a term, or None when the term fits.
 
     def check(term: Term) -> Complaint | None:
         """Return the complaint about a term, or None when it has one of the forms."""
-        if isinstance(term, Symbol) and forms.get(term.name) == len(term.args):
+        if isinstance(term, Symbol) and term.name in forms and len(forms[term.name]) == len(term.args):
             return None
-        known = ", ".join(f"{form}/{count}" for form, count in forms.items())
+        known = ", ".join(f"{form}/{len(types)}" for form, types in forms.items())
         return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"{plural} are {known}")
 
     return ArgumentType(name, check)
 
 
 STEP_ARGUMENT = _compound_argument("step", "steps", PLAN_STEPS)
-# The activities of the agenda, with their numbers of arguments.
+BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
+# The activities of the agenda.
 WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look")  # about nothing in particular
-ACTIVITIES: Mapping[str, int] = {
-    **dict.fromkeys(WHOLE_ACTIVITIES, 0),
-    **dict.fromkeys(("resume", "blame", "doubt", *SETTLING_STEPS), 1),
+ACTIVITIES: Forms = {
+    **dict.fromkeys(WHOLE_ACTIVITIES, ()),
+    **dict.fromkeys(("blame", "doubt", *SETTLING_STEPS), (SUBJECT_ARGUMENT,)),
+    "resume": (BEGUN_ARGUMENT,),
 }
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
-# By the name of an argument type of compound terms: their names, with the numbers of arguments.
-COMPOUND_FORMS: Mapping[str, Mapping[str, int]] = {"step": PLAN_STEPS, "activity": ACTIVITIES}
-SUBJECT_ARGUMENT = _name_argument("subject")  # what the robot is stuck with: a goal, all, robot, task, plan or look
+# By the name of an argument type of compound terms: these terms.
+COMPOUND_FORMS: Mapping[str, Forms] = {"step": PLAN_STEPS, "activity": ACTIVITIES}
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
-BEGUN_ARGUMENT = word_argument("begun activity", ("make_way", "try", "feel"))
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
@@ -106,7 +105,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     "interpretation": {
         ("region", 3): (REGION_ARGUMENT, word_argument("state", ("zero", "nonzero")), CONFIDENCE_ARGUMENT),
         ("rim", 1): (REGION_ARGUMENT,),
-        ("own", 1): (REGION_ARGUMENT,),
         ("surrounds", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
         ("extent", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
         ("mass", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
@@ -133,6 +131,17 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("wanted", 1): (PARAMETER_ARGUMENT,),
         ("named", 1): (PARAMETER_ARGUMENT,),
         ("claim", 4): (PARAMETER_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("described", 2): (PARAMETER_ARGUMENT, word_argument("kind", ("door", "room"))),
+        ("related", 4): (RELATION_ARGUMENT, PARAMETER_ARGUMENT, PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("place", 3): (CANDIDATE_ARGUMENT, word_argument("kind", ("door", "room")), CONFIDENCE_ARGUMENT),
+        ("holds", 3): (RELATION_ARGUMENT, CANDIDATE_ARGUMENT, CANDIDATE_ARGUMENT),
+        ("measure", 5): (
+            CANDIDATE_ARGUMENT,
+            PROPERTY_ARGUMENT,
+            LENGTH_ARGUMENT,
+            LENGTH_ARGUMENT,
+            CONFIDENCE_ARGUMENT,
+        ),
         ("candidate", 2): (CANDIDATE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("has", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("seen", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -152,6 +161,11 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("hypothesised", 1): (PARAMETER_ARGUMENT,),
         ("doubtful", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("contradicted", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
+        ("near_miss", 3): (
+            PARAMETER_ARGUMENT,
+            CANDIDATE_ARGUMENT,
+            word_argument("claim", (*PROPERTIES, *CLAIMED_RELATIONS)),
+        ),
         ("unmovable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("measurable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
     },
@@ -170,6 +184,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("lies", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("connects", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("width", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
+        ("relief", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
+        ("door", 2): (PLAN_DOOR_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("bound", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
         ("may_mean", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
         ("meant_before", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
@@ -212,6 +228,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("settled", 2): (SUBJECT_ARGUMENT, TIME_ARGUMENT),
         ("moved", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
         ("robot_in", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
+        ("room_before", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
         ("needed", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
         ("reached", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
         ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
@@ -244,16 +261,16 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "size", "begins", "done", "lay",
+        "connects", "relief", "size", "begins", "done", "lay",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
-        "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
+        "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
         "default_price", "acts", "waits", "holds", "left", "settling", "settled",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
-    "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("bound", 2)}),
+    "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
 # nothing but the world model bind the task plan; elsewhere they would leave no answer.
@@ -262,14 +279,15 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        "reconciliation": WORLD_PREDICATES - {("corner", 3)},  # the corners are found after it
+        "reconciliation": WORLD_PREDICATES,
         "task": WORLD_PREDICATES,
         "agenda": WORLD_PREDICATES,
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
-    {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4)}
+    {("region", 3), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4)}
+    | {("described", 2), ("place", 3)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
 )

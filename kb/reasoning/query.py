@@ -18,7 +18,6 @@ from utak.kb.language.integers import integers_beyond_32_bits
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.language.terms import Fact, Number
-from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.reasoning.rulebook import Statement
 from utak.kb.reasoning.worker import Worker
 
@@ -26,9 +25,6 @@ MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default;
 MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
 MAX_QUERIES_PER_WORKER = 20_000  # queries after which a new process answers, 0.1 s once; a convention
 MAX_ANSWER_ROWS = 10_000  # rows of an answer, by default; a convention
-QUERY_PREDICATES = tuple(
-    BELIEF_PREDICATES
-)  # the predicates of which queries can be made, by name and number of arguments
 
 
 class QueryLimitError(Exception):
@@ -52,10 +48,21 @@ class QueryAnswer:
         """Return a table of the rows under the names of the variables, or the kind of the answer in words."""
         if self.kind != "bindings":
             return self.kind
-        cells = [list(self.variables), *([str(value) for value in row] for row in self.rows)]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
-        return "\n".join([*lines, f"... and more than these {len(self.rows)} rows"] if self.more else lines)
+        more = f"\n... and more than these {len(self.rows)} rows" if self.more else ""
+        return plain_table(self.variables, self.rows) + more
+
+
+def plain_table(columns: Sequence[str], rows: Sequence[Sequence[int | str]]) -> str:
+    """Return a table as text, columns parted by two blanks, without a line end at the end.
+
+    >>> print(plain_table(["X", "C"], [["o1", 90], ["o12", 5]]))
+    X    C
+    o1   90
+    o12  5
+    """
+    cells = [list(columns), *([str(value) for value in row] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return "\n".join("  ".join(map(str.ljust, row, widths)).rstrip() for row in cells)
 
 
 class QueryEngine:
@@ -151,7 +158,6 @@ def _request_entry(fact: Fact) -> list[int | str]:
 
 def _query_error(text: str, what: str, at: Sequence[int] = (1, 0), hint: str = "") -> BadInputError:
     """Return the error with the message `what` at a line and column of the query, from 1."""
-    # At a whole line for column 0.
     lines = text.split("\n")
     number, column = at if at[0] <= len(lines) else (len(lines), 0)  # beyond the end: something is missing at the end
     line = lines[number - 1]

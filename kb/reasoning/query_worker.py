@@ -79,7 +79,6 @@ def answer_query(
     facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), max_rows: int | None = None
 ) -> Response:
     """Return the answer to a query over facts; the parameters are those of `believed_facts` and `answer_over`."""
-    # Raises ClauseError, QueryError and RuleError as these do.
     return answer_over(believed_facts(facts, rules), query, max_rows)
 
 

@@ -4,7 +4,7 @@ It runs in the process of kb.reasoning.query_worker. Arithmetic is rewritten to 
 exactly: where clingo would wrap a result to 32 bits without a message, the rule has an error.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
 import clingo
@@ -23,7 +23,7 @@ from clingo.ast import (
 from utak.kb.language.vocabulary import Signature
 from utak.kb.three_valued.arithmetic import CalculationError, calculate
 from utak.kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
-from utak.kb.tracing.syntax import global_variables_of
+from utak.kb.tracing.syntax import global_variables_of, head_elements, parts_of
 
 RENAMED_PREFIX = "own__"  # of the names of users' predicates where encodings have another predicate of that name
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding
@@ -68,10 +68,10 @@ def _kept(node: AST) -> bool:
 
 
 def _entry(node: AST, names: "_OwnNames") -> dict[str, Any]:
-    """Return a statement as a dictionary of JSON values."""
+    """Return a statement as the attributes of `Statement` but its source, with JSON values."""
     if node.ast_type == ASTType.Defined:
         entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "condition": ""}
-        return entry | {"plain": False, "variables": [], "declares": [node.name, node.arity]}
+        return entry | {"is_single_atom_rule": False, "variables": [], "declares": [node.name, node.arity]}
     chosen, conditions = _split_head(node.head) if node.ast_type == ASTType.Rule else ([], [])
     heads = [atom for part in chosen for atom in _atoms(part)]
     body = [atom for part in (*node.body, *conditions) for atom in _atoms(part)]
@@ -83,7 +83,7 @@ def _entry(node: AST, names: "_OwnNames") -> dict[str, Any]:
         "text": str(checked),
         "written": str(node),
         "condition": "; ".join(map(str, checked.body)),
-        "plain": _is_plain(node),
+        "is_single_atom_rule": _is_plain(node),
         "variables": list(global_variables_of(node)),
         "declares": None,
     }
@@ -99,86 +99,52 @@ def _is_plain(node: AST) -> bool:
 def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
     """Return the literals that a head states or chooses, and the literals (conditions) on which they depend."""
     # Raises ClauseError for a theory atom.
-    if head.ast_type == ASTType.Literal:
-        return [head], []
-    if head.ast_type not in (ASTType.Aggregate, ASTType.Disjunction, ASTType.HeadAggregate):
+    if head.ast_type not in (ASTType.Literal, ASTType.Aggregate, ASTType.Disjunction, ASTType.HeadAggregate):
         raise ClauseError("theory atoms are not known here", place_of(head))
-    chosen, conditions = [], []
-    for element in head.elements:
-        inner = element.condition if head.ast_type == ASTType.HeadAggregate else element
-        chosen.append(inner.literal)
-        conditions += list(inner.condition)
-    return chosen, conditions
+    elements = head_elements(head)
+    return [literal for literal, _ in elements], [one for _, conditions in elements for one in conditions]
 
 
-def _atoms(node: AST) -> Iterator[dict[str, Any]]:
-    """Yield the atoms in a part of a statement, each as a dictionary of JSON values, in the order of the text."""
-    # The keys are "name" (the predicate), "arity" (the number of arguments), "at" (line and column, from 1),
-    # "constants" (the text of each argument that is a constant, None for any other), "places" (line and column of each
-    # argument), "forms" (name and number of arguments of each argument that is a compound term, None for any other) and
-    # "negative" (whether it is negated, or stands in an aggregate or a condition).
-    reader = _AtomCollector()
-    reader.visit(node)
-    yield from reader.found
-
-
-def _form(term: AST) -> tuple[str, int] | None:
-    """Return the name and the number of arguments of a compound term; None for any other term."""
-    compound = term.ast_type == ASTType.Function and bool(term.name)
-    return (term.name, len(term.arguments)) if compound else None
-
-
-class _AtomCollector(Transformer):
-    """Collects atoms. An atom in an aggregate or in a condition counts as negated."""
-
-    def __init__(self) -> None:
-        self.found: list[dict[str, Any]] = []
-        self.negative = False
-
-    def visit_Literal(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Collect the atoms of a literal; those after `not` are negated. Return the node."""
-        before, self.negative = self.negative, self.negative or node.sign != Sign.NoSign
-        self.visit_children(node)
-        self.negative = before
-        return node
-
-    def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Collect the atoms of an aggregate as negated. Return the node."""
-        before, self.negative = self.negative, True
-        self.visit_children(node)
-        self.negative = before
-        return node
-
-    def visit_ConditionalLiteral(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Collect the atoms of a conditional literal as negated. Return the node."""
-        before, self.negative = self.negative, True
-        self.visit_children(node)
-        self.negative = before
-        return node
-
-    def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Append an atom to `found`, one for each choice of a pool; raise ClauseError for `-atom`. Return the node."""
-        for option in getattr(node.symbol, "arguments", ()) if node.symbol.ast_type == ASTType.Pool else (node.symbol,):
-            if option.ast_type == ASTType.UnaryOperation:
-                raise ClauseError("classical negation is not known here", place_of(option))
-            arguments = list(getattr(option, "arguments", ()))
-            name = option.name if option.ast_type == ASTType.Function else option.symbol.name
-            self.found.append(
-                {
-                    "name": name,
-                    "arity": len(arguments),
-                    "at": place_of(option),
-                    "constants": [str(part) if part.ast_type == ASTType.SymbolicTerm else None for part in arguments],
-                    "places": [place_of(part) for part in arguments],
-                    "forms": [_form(part) for part in arguments],
-                    "negative": self.negative,
-                }
-            )
-        return node
-
-    def visit_TheoryAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Raise ClauseError: theory atoms are not known here."""
+def _atoms(node: AST, negative: bool = False) -> Iterator[dict[str, Any]]:
+    """Yield the atoms in a part of a statement, as the attributes of `RuleAtom`, in the order of the text."""
+    # One for each choice of a pool. An atom in an aggregate or in a condition counts as negated.
+    if node.ast_type == ASTType.TheoryAtom:
         raise ClauseError("theory atoms are not known here", place_of(node))
+    if node.ast_type != ASTType.SymbolicAtom:
+        negative |= node.ast_type in (ASTType.BodyAggregate, ASTType.ConditionalLiteral)
+        negative |= node.ast_type == ASTType.Literal and node.sign != Sign.NoSign
+        for part in parts_of(node):
+            yield from _atoms(part, negative)
+        return
+    for option in getattr(node.symbol, "arguments", ()) if node.symbol.ast_type == ASTType.Pool else (node.symbol,):
+        if option.ast_type == ASTType.UnaryOperation:
+            raise ClauseError("classical negation is not known here", place_of(option))
+        arguments = list(getattr(option, "arguments", ()))
+        yield {
+            "name": option.name if option.ast_type == ASTType.Function else option.symbol.name,
+            "at": place_of(option),
+            "constants": _constants_among(arguments),
+            "places": [place_of(part) for part in arguments],
+            "forms": [_form(part) for part in arguments],
+            "negative": negative,
+        }
+
+
+def _form(term: AST) -> tuple[str, list[str | None]] | None:
+    """Return the name of a compound term and the text of each argument without variables; None for others."""
+    compound = term.ast_type == ASTType.Function and bool(term.name)
+    return (term.name, [str(part) if _is_ground(part) else None for part in term.arguments]) if compound else None
+
+
+def _is_ground(term: AST) -> bool:
+    """Return whether a term is a constant, or a compound term of such."""
+    compound = term.ast_type == ASTType.Function and bool(term.name)
+    return term.ast_type == ASTType.SymbolicTerm or (compound and all(map(_is_ground, term.arguments)))
+
+
+def _constants_among(arguments: Sequence[AST]) -> list[str | None]:
+    """Return the text of each argument that is a constant, None for any other."""
+    return [str(part) if part.ast_type == ASTType.SymbolicTerm else None for part in arguments]
 
 
 def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:

@@ -4,16 +4,17 @@ A rule reaches an encoding when all its predicates are known there: documented p
 predicates of the user's own that rules define there. `belief` stands for the facts that queries read.
 """
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from utak.kb.language.arguments import ArgumentType
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.source_text import Source
-from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.language.terms import Fact, Symbol
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature, hint_for
 from utak.kb.reasoning.interfaces import (
     COMPOUND_FORMS,
     DEFINING_FACTS,
@@ -25,23 +26,23 @@ from utak.kb.reasoning.interfaces import (
 )
 
 QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
-# Predicates of encodings that users' rules do not reach, and those encodings.
-INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
-    ("chosen", 1): ("accommodation",), ("explanation", 4): ("accommodation",), ("choose", 1): ("aims", "routes"),
-    ("aim", 3): ("aims",), ("besides", 2): ("aims",), ("chance", 2): ("aims",),
-    ("last", 1): ("aims", "routes", "transport"),
-    ("take", 1): ("boldness",), ("plan", 2): ("boldness",), ("hopes", 1): ("boldness",), ("askew", 1): ("boldness",),
-    ("short", 1): ("boldness",), ("aside", 1): ("boldness",), ("route", 4): ("routes",), ("through", 2): ("routes",),
-    ("not_through", 1): ("routes",), ("door_price", 2): ("routes",), ("option", 4): ("transport",),
-    ("refuted", 3): ("transport",),
-    ("undecided", 3): ("transport",), ("hopeless", 0): ("transport",), ("try", 3): ("transport",),
-    ("halt", 3): ("feel",), ("tells", 4): ("feel",), ("feel", 1): ("feel",),
-    ("unlikely", 2): ("accommodation",), ("odd", 1): ("accommodation",), ("crooked", 2): ("accommodation",),
-    ("stands", 0): ("accommodation",), ("met", 1): ("accommodation",), ("off_middle", 0): ("accommodation",),
-    ("trust", 1): ("accommodation",), ("slips", 0): ("accommodation",), ("proven", 0): ("accommodation",),
-    ("contradicted", 1): ("accommodation",), ("cramped", 1): ("accommodation",),
-    ("clear", 0): ("accommodation",), ("uneven", 0): ("accommodation",), ("unchanged", 0): ("accommodation",),
-}  # fmt: skip
+# By the name of an encoding: its predicates that users' rules do not reach.
+INTERNAL_THERE = {
+    "accommodation": (
+        "chosen/1 explanation/4 unlikely/2 odd/1 crooked/2 stands/0 met/1 off_middle/0 trust/1 slips/0 proven/0 "
+        "contradicted/1 cramped/1 clear/0 uneven/0 unchanged/0"
+    ),
+    "aims": "choose/1 aim/3 besides/2 chance/2 last/1",
+    "boldness": "take/1 plan/2 hopes/1 askew/1 short/1 aside/1",
+    "feel": "halt/3 tells/4 feel/1",
+    "routes": "choose/1 last/1 route/4 through/2 not_through/1 door_price/2",
+    "transport": "last/1 option/4 refuted/3 undecided/3 hopeless/0 try/3",
+}
+# These predicates, and those encodings.
+INTERNAL_PREDICATES: dict[Signature, tuple[str, ...]] = {}
+for _encoding, _forms in INTERNAL_THERE.items():
+    for _name, _arity in (form.split("/") for form in _forms.split()):
+        INTERNAL_PREDICATES[_name, int(_arity)] = (*INTERNAL_PREDICATES.get((_name, int(_arity)), ()), _encoding)
 # The predicates that rules may use, by encoding.
 PREDICATES_BY_ENCODING: Mapping[str, frozenset[Signature]] = {
     **{name: frozenset(interface) for name, interface in USER_RULE_INTERFACES.items()},
@@ -59,8 +60,8 @@ class RuleAtom:
     constants: tuple[str | None, ...]  # of each argument its text when it is a constant, else None
     at: tuple[int, int]  # line and column of the atom, from 1
     places: tuple[tuple[int, int], ...]  # line and column of each argument, from 1
-    # Of each argument its name and number of arguments when it is a compound term, else None
-    forms: tuple[tuple[str, int] | None, ...]
+    # Of each argument its name and the text of its own arguments without variables when it is compound, else None
+    forms: tuple[tuple[str, tuple[str | None, ...]] | None, ...]
     negative: bool  # whether `not` stands before the atom, or it stands in an aggregate or a condition
 
     @property
@@ -103,28 +104,16 @@ class Statement:
 
 def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
     """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader.read_statements)."""
-    heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
-    declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
-    return Statement(
-        source=source,
-        at=(entry["at"][0], entry["at"][1]),
-        heads=heads,
-        body=body,
-        text=entry["text"],
-        written=entry["written"],
-        condition=entry["condition"],
-        is_single_atom_rule=entry["plain"],
-        declares=declares,
-        variables=tuple(entry["variables"]),
-    )
+    values = _frozen(entry)
+    heads, body = (tuple(RuleAtom(**one) for one in values.pop(part)) for part in ("heads", "body"))
+    return Statement(source, heads=heads, body=body, **values)
 
 
-def _atom(entry: Mapping[str, Any]) -> RuleAtom:
-    """Return an atom from the JSON values of the worker: name, constants, at, places, forms, negative."""
-    line, column = entry["at"]
-    places = tuple((place[0], place[1]) for place in entry["places"])
-    forms = tuple(None if form is None else (form[0], form[1]) for form in entry["forms"])
-    return RuleAtom(entry["name"], tuple(entry["constants"]), (line, column), places, forms, entry["negative"])
+def _frozen(value: Any) -> Any:
+    """Return a JSON value with tuples in the place of lists."""
+    if isinstance(value, Mapping):
+        return {key: _frozen(inner) for key, inner in value.items()}
+    return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value
 
 
 class Rulebook:
@@ -169,22 +158,17 @@ class Rulebook:
 
     def _invalid_parts(self, one: Statement) -> Iterator[Problem]:
         """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants."""
+        known = INTERFACE_PREDICATES | self.own_predicates
         for atom in (*one.heads, *one.body):
-            if (
-                atom.signature in INTERNAL_PREDICATES
-                and atom.signature not in INTERFACE_PREDICATES | self.own_predicates
-            ):
+            if atom.signature in INTERNAL_PREDICATES and atom.signature not in known:
                 where = " and ".join(f"{name}.lp" for name in INTERNAL_PREDICATES[atom.signature])
                 what = f"{_form(atom.signature)} belongs to {where}, which rules of users do not reach"
-                yield one.problem(
-                    what, atom.at, f"they reach {', '.join(f'{name}.lp' for name in sorted(USER_RULE_INTERFACES))}"
-                )
+                reached = ", ".join(f"{name}.lp" for name in sorted(USER_RULE_INTERFACES))
+                yield one.problem(what, atom.at, f"they reach {reached}")
         for atom in one.body:
-            if atom.signature not in INTERFACE_PREDICATES | self.own_predicates | self._declared | set(
-                INTERNAL_PREDICATES
-            ):
-                yield one.problem(*_unknown(atom, INTERFACE_PREDICATES | self.own_predicates))
-            yield from self._unknown_steps(one, atom)
+            if atom.signature not in known | self._declared | INTERNAL_PREDICATES.keys():
+                yield one.problem(*_unknown(atom, known))
+            yield from _never_held(one, atom)
         for atom in one.heads:
             if atom.signature in READ_ONLY_PREDICATES:
                 what = f"{_form(atom.signature)} says what there is, and rules add nothing to it"
@@ -202,35 +186,17 @@ class Rulebook:
         known = [names for names in PREDICATES_BY_ENCODING.values() if not spoken or spoken & names]
         return any(atom.name == name for names in known for name, _ in names - READ_ONLY_PREDICATES)
 
-    def _unknown_steps(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
-        """Yield the problems of steps and activities in an atom of a body that no encoding knows."""
-        # The atom never holds.
-        options = [types[atom.signature] for types in USER_RULE_INTERFACES.values() if atom.signature in types]
-        for number, place in enumerate(atom.places):
-            form, constant = atom.forms[number], atom.constants[number]
-            kinds = {types[number].name for types in options}
-            if (form is None and constant is None) or not kinds or not kinds <= COMPOUND_FORMS.keys():
-                continue
-            name, count = form or (str(constant), 0)
-            known = {known: counts for kind in sorted(kinds) for known, counts in COMPOUND_FORMS[kind].items()}
-            if known.get(name) != count:
-                hint = f"there is {name}/{known[name]}" if name in known else did_you_mean(name, known)
-                yield one.problem(f"unknown {' or '.join(sorted(kinds))} {name}/{count}", place, hint)
-
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of constants in a head atom that no encoding accepts at their place."""
         options = [
             interface[atom.signature] for interface in USER_RULE_INTERFACES.values() if atom.signature in interface
         ]
-        for number, constant in enumerate(atom.constants):
-            if constant is not None and options:
-                term = facts_from_text(f"p({constant}).")[0].args[0]
-                complaints = [types[number].check(term) for types in options]
-                if options[0][number].name in TRANSIENT_NUMBERS:
-                    what = f"there is no {options[0][number].name} {constant}: they are numbered anew each time"
-                    yield one.problem(what, atom.places[number], "take the number from the facts, as a variable")
-                elif all(complaint is not None for complaint in complaints) and complaints[0] is not None:
-                    yield one.problem(complaints[0].what, atom.places[number], complaints[0].hint)
+        for constant, place, types in zip(atom.constants, atom.places, zip(*options, strict=True), strict=False):
+            if constant is not None and types[0].name in TRANSIENT_NUMBERS:
+                what = f"there is no {types[0].name} {constant}: they are numbered anew each time"
+                yield one.problem(what, place, "take the number from the facts, as a variable")
+            else:
+                yield from _refused_everywhere(one, constant, types, place)
 
     def _taking_part(self, encoding: str) -> tuple[Statement, ...]:
         """Return the statements that take part in an encoding."""
@@ -240,12 +206,6 @@ class Rulebook:
             return found
         of_world = self._applicable(world, world)  # with what they define
         return tuple(one for one in found if one.heads or one not in of_world)
-
-    def world_facts_named(self, encoding: str, lines: Container[str] | None = None) -> frozenset[Signature]:
-        """Return the predicates of the world model that rules name, all or those at some lines, in an encoding."""
-        rules = (one for one in self.rules_reaching(encoding) if lines is None or one.line in lines)
-        named = {atom.signature for one in rules for atom in one.body}
-        return WORLD_FACTS_THERE.get(encoding, frozenset()) & named
 
     def _applicable(self, known: frozenset[Signature], read_only: frozenset[Signature]) -> tuple[Statement, ...]:
         """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself."""
@@ -285,12 +245,47 @@ def _form(signature: Signature) -> str:
     return f"{signature[0]}/{signature[1]}"
 
 
-def _unknown(atom: RuleAtom, known: Iterable[Signature]) -> tuple[str, tuple[int, int], str]:
+def _unknown(atom: RuleAtom, known: Collection[Signature]) -> tuple[str, tuple[int, int], str]:
     """Return message, place (line, column) and hint for an atom whose predicate does not exist."""
-    known = set(known)
-    forms = sorted(_form(other) for other in known if other[0] == atom.name)
-    hint = f"there is {', '.join(forms)}" if forms else did_you_mean(atom.name, {name for name, _ in known})
-    return f"unknown predicate {_form(atom.signature)}", atom.at, hint
+    return f"unknown predicate {_form(atom.signature)}", atom.at, hint_for(atom.name, known)
+
+
+def _never_held(one: Statement, atom: RuleAtom) -> Iterator[Problem]:
+    """Yield the problems of steps, activities and constants in an atom of a body with which no atom ever holds."""
+    options = [types[atom.signature] for types in USER_RULE_INTERFACES.values() if atom.signature in types]
+    if atom.signature in BELIEF_PREDICATES:
+        options.append(BELIEF_PREDICATES[atom.signature].arguments)
+    for form, constant, place, types in zip(
+        atom.forms, atom.constants, atom.places, zip(*options, strict=True), strict=False
+    ):
+        kinds = sorted({type_.name for type_ in types})
+        if not COMPOUND_FORMS.keys() >= set(kinds):
+            yield from _refused_everywhere(one, constant, types, place)
+            continue
+        if form is None and constant is None:
+            continue
+        name, parts = form or (str(constant), ())
+        known = {known: arguments for kind in kinds for known, arguments in COMPOUND_FORMS[kind].items()}
+        if name not in known or len(known[name]) != len(parts):
+            hint = f"there is {name}/{len(known[name])}" if name in known else did_you_mean(name, known)
+            yield one.problem(f"unknown {' or '.join(kinds)} {name}/{len(parts)}", place, hint)
+            continue
+        for part, type_ in zip(parts, known[name], strict=True):
+            yield from _refused_everywhere(one, part, [type_], place)
+
+
+def _refused_everywhere(
+    one: Statement, constant: str | None, types: Sequence[ArgumentType], place: tuple[int, int]
+) -> Iterator[Problem]:
+    """Yield the problem of a constant that none of some argument types accepts."""
+    if constant in (None, ROBOT):  # rules call the node of the robot utak
+        return
+    term = facts_from_text(f"p({constant}).")[0].args[0]
+    complaints = [complaint for type_ in types if (complaint := type_.check(term)) is not None]
+    if len(complaints) == len(types):
+        named = isinstance(term, Symbol) and complaints[0].hint.startswith("such as o1")
+        hint = f"; for what parameter {constant} of a task means, write meaning({constant}, X)" if named else ""
+        yield one.problem(complaints[0].what, place, complaints[0].hint + hint)
 
 
 def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Sequence[Fact]]) -> str:

@@ -1,9 +1,9 @@
 r"""The plain sentences of rules: comments in rule files that say why a rule holds.
 
     %! because "Region {R} is isolated: floor {F} surrounds it."
-    isolated(R) :- region(R, nonzero, _), surrounds(F, R), region(F, zero, _), not own(R).
+    isolated(R) :- region(R, nonzero, _), surrounds(F, R), region(F, zero, _).
 
-    %! says own(R) "region {R} is the robot's own square" else "region {R} is not known to be the robot's own square"
+    %! says isolated(R) "region {R} stands isolated on the floor" else "no floor seen so far surrounds region {R}"
 
 The first kind stands directly before a rule, a constraint or a weak constraint. Its placeholders are global variables
 of that rule; `{N/10}` and `{N/100}` show a number in tenths or hundredths as a decimal number. The second kind puts a

@@ -191,16 +191,11 @@ def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple
     )
 
 
-def world_facts_named(encoding: str, users: Sequence[Path], lines: Container[str] | None = None) -> frozenset[str]:
-    """Return the names of the predicates of the world model that users' rules, or those at some lines, want there."""
+def predicates_read(encoding: str, users: Sequence[Path], lines: Container[str] | None = None) -> frozenset[str]:
+    """Return the names of the predicates in the bodies of users' rules, or of those at some lines, in an encoding."""
     # Raises CannotOpenError or BadInputError when the files are not valid.
-    return frozenset(name for name, _ in read_rules(users).world_facts_named(encoding, lines)) if users else frozenset()
-
-
-def predicates_read(encoding: str, users: Sequence[Path]) -> frozenset[str]:
-    """Return the names of the predicates in the bodies of users' rules that take part in an encoding."""
     rules = read_rules(users).rules_reaching(encoding) if users else ()
-    return frozenset(atom.name for one in rules for atom in one.body)
+    return frozenset(atom.name for one in rules if lines is None or one.line in lines for atom in one.body)
 
 
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:

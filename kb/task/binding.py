@@ -1,29 +1,33 @@
 """Reconciliation of the task with the world model: the object that each parameter means (kb/asp/reconciliation.lp)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from utak.kb.language.terms import Symbol
 from utak.kb.objects.proportions import possible_rectangle_shapes
 from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
-from utak.kb.reasoning.user_rules import rules_reach
+from utak.kb.reasoning.user_rules import rules_reach, rules_to_blame
+from utak.kb.task.described import claim_facts
 from utak.kb.task.task import Task
 from utak.kb.world.model import Node, WorldModel
 
+RECONCILIATION = KB_ENCODINGS / "reconciliation.lp"
 NO_MEANINGS: Mapping[str, str] = MappingProxyType({})
 
 
 class Reconciliation(NamedTuple):
-    """The objects of the world model that the task's parameters mean."""
+    """The things, doors and rooms of the world model that the task's parameters mean."""
 
-    binding: Mapping[str, str]  # parameter -> node, of each bound parameter
+    binding: Mapping[str, str]  # parameter -> node, door or room, of each bound parameter
     hypothesised: tuple[str, ...]  # parameters of goals that match nothing seen so far
     doubtful: tuple[tuple[str, str], ...]  # (parameter, node) pairs that need another observation to decide
-    # (parameter, node, property) where the best match contradicts a claim; property is shape or colour
+    # (parameter, node, property) where the best match contradicts a claim; property: see `claim`
     contradicted: tuple[tuple[str, str, str], ...]
+    # (parameter, node, property) where the parameter means nothing, and the node is as claimed in all but the property
+    near_misses: tuple[tuple[str, str, str], ...] = ()
     # (parameter, node) pairs that match, but the task moves the parameter and the node cannot be moved
     unmovable: tuple[tuple[str, str], ...] = ()
     # (parameter, node) pairs that may match, which a better estimate of the node's size decides
@@ -32,6 +36,7 @@ class Reconciliation(NamedTuple):
     # carried, and neither node was moved: a plan may mean either. () where users' rules take part, which then decide
     # alone.
     as_well: tuple[tuple[str, str], ...] = ()
+    facts: tuple[str, ...] = ()  # what the encoding was given
 
 
 def reconcile(
@@ -46,9 +51,10 @@ def reconcile(
     given_up: Iterable[tuple[str, str]] = (),
     refused: Iterable[tuple[str, str]] = (),
     world: Iterable[str] = (),
+    places: Iterable[str] = (),
 ) -> Reconciliation:
-    """Return the best match of the task's object parameters with objects of the world model."""
-    facts = [*_task_facts(task), *(f"carried({x})" for x in carried)]
+    """Return the best match of the task's parameters with the world model; `places`: see kb.task.described."""
+    facts = [*_task_facts(task), *(f"carried({x})" for x in carried), *places]
     facts += [fact for node in model.objects for fact in _node_facts(node)]
     facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
     facts += [f"bound_before({x},{node})" for x, node in sorted(before.items())]
@@ -56,20 +62,33 @@ def reconcile(
     facts += [f"kept({x})" for x in sorted(kept)]
     facts += [f"given_up({x},{node})" for x, node in sorted(given_up)]
     facts += [*(f"refused({x},{node})" for x, node in sorted(refused)), *world]
-    if rules_reach("reconciliation", rules):  # what they state of a node counts in place of what was seen of it
+    reached = rules_reach(RECONCILIATION.stem, rules)
+    if reached:  # what they state of a node counts in place of what was seen of it
         facts += [f"seen{fact[len('has') :]}" for fact in facts if fact.startswith("has(")]
     found: dict[str, list[tuple[str, ...]]] = {}
-    for atom in solve([KB_ENCODINGS / "reconciliation.lp", *rules], facts) or ():
+    for atom in solve([RECONCILIATION, *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))
     return Reconciliation(
         {atom[0]: atom[1] for atom in found.get("bind", ())},
         tuple(x for (x,) in found.get("hypothesised", ())),
         tuple((x, node) for x, node in found.get("doubtful", ())),
         tuple((x, node, p) for x, node, p in found.get("contradicted", ())),
+        tuple((x, node, p) for x, node, p in found.get("near_miss", ())),
         tuple((x, node) for x, node in found.get("unmovable", ())),
         tuple((x, node) for x, node in found.get("measurable", ())),
-        () if rules_reach("reconciliation", rules) else tuple((x, node) for x, node in found.get("as_well", ())),
+        () if reached else tuple((x, node) for x, node in found.get("as_well", ())),
+        tuple(facts),
     )
+
+
+def rules_that_deny(parameter: str, reconciled: Reconciliation, rules: tuple[Path, ...]) -> str:
+    """Return the places of the users' rules without which a parameter would mean something; "" for none."""
+    return " and ".join(rules_to_blame(RECONCILIATION, rules, reconciled.facts, partial(_is_unbound, parameter)))
+
+
+def _is_unbound(parameter: str, atoms: Sequence[Any]) -> bool:
+    """Return whether an answer binds a parameter to nothing."""
+    return not any(atom.name == "bind" and str(atom.arguments[0]) == parameter for atom in atoms)
 
 
 def as_well_by_parameter(reconciled: Reconciliation) -> Mapping[str, tuple[str, ...]]:
@@ -85,12 +104,9 @@ def _task_facts(task: Task) -> Iterable[str]:
     for name, parameter in task.parameters.items():
         if parameter.kind == "object":
             yield f"wanted({name})"
-            if name in task.goal_parameters:
-                yield f"named({name})"
-    for claim in task.claims:
-        x, value = claim.fact.args
-        assert isinstance(x, Symbol)
-        yield f"claim({x},{claim.fact.name},{value},{claim.confidence})"
+        if name in task.goal_parameters and (parameter.kind == "object" or name in task.described):
+            yield f"named({name})"
+    yield from claim_facts(task)
 
 
 def _node_facts(node: Node) -> Iterable[str]:

@@ -5,39 +5,23 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.goal_words import CONSTRAINT_GOALS, GOAL_WORDS, TRACK_GOALS, WRAPPING_GOALS
 from utak.kb.language.reader import facts_from_text, parse_facts
-from utak.kb.language.source_text import Source, read_source
+from utak.kb.language.source_text import Source, read_source, source_from_bytes
 from utak.kb.language.terms import Fact, Number, Symbol, Term
 from utak.kb.language.vocabulary import (
-    CONSTRAINT_GOALS,
+    CLAIM_WORDS,
     GOAL_VOCABULARY,
     RESERVED_PARAMETER_NAMES,
     START_VOCABULARY,
-    TRACK_GOALS,
     Vocabulary,
     check_facts,
-    check_goal_table,
 )
 
 CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
 PARAMETER_KINDS = ("object", "door", "room")  # the predicates that introduce parameters
 # The shape classes that a shape class includes; everything is a polygon, too.
 SHAPE_SUBCLASSES = {"rectangle": {"square", "brick"}}
-# By the name of a goal: the kinds of parameters that each argument accepts; None where an argument is no parameter.
-GOAL_ARGUMENT_KINDS: Mapping[str, tuple[tuple[str, ...] | None, ...]] = {
-    "at": (("object", "utak"), ("object", "start")),
-    "in": (("object", "utak"), ("room",)),
-    "through": (("object", "utak"), ("door",)),
-    "around": (("object", "utak"), None),
-    "circled": (None, ("object",)),
-    "beside": (("object", "utak"), ("object",)),
-    "pose": (("object",), None, None),
-    "not_through": (("object", "utak"), ("door",)),
-    "avoid": (("object", "utak"), None),
-    "carry_nothing_through": (("door",),),
-}
-check_goal_table(GOAL_ARGUMENT_KINDS, "GOAL_ARGUMENT_KINDS in kb/task/task.py")
-WRAPPING_GOALS = ("first", "then", "prefer")  # words of goal.lp whose first argument is a goal
 
 
 @dataclass(frozen=True)
@@ -51,9 +35,9 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim about an object."""
+    """A claim about a thing, a door or a room, as it is at first."""
 
-    fact: Fact  # the claim, such as `shape(x, square)` or `colour(x, r)`
+    fact: Fact  # the claim, such as `shape(x, square)` or `connects(d, r, s)`
     confidence: int = CERTAIN_CONFIDENCE  # the user's confidence in it, percent, 0 to 100; 100 when none is given
 
 
@@ -62,7 +46,7 @@ class Task:
     """The task of the robot."""
 
     parameters: Mapping[str, Parameter]  # the parameters by name, in the order of start.lp.
-    claims: tuple[Claim, ...]  # the claims about objects' shapes and colours, in the order of start.lp.
+    claims: tuple[Claim, ...]  # what is claimed of the parameters, in the order of start.lp.
     # What shall hold, facts in the order of goal.lp; `first(G)` and `then(G)` are kept as they stand.
     goals: tuple[Fact, ...]
 
@@ -71,14 +55,16 @@ class Task:
         return word in self.parameters and self.parameters[word].kind == "object"
 
     @property
+    def described(self) -> frozenset[str]:
+        """The doors and rooms of which something is claimed; of the others nothing tells which ones they are."""
+        words = {str(term) for claim in self.claims for term in claim.fact.args}
+        return frozenset(x for x in words & set(self.parameters) if not self.is_object(x))
+
+    @property
     def goal_parameters(self) -> frozenset[str]:
         """The names of the parameters that goals mention, also inside `first(G)`, `then(G)` and `prefer(G, N)`."""
-        words = {str(term) for goal in self.goals for term in _inner_goal(goal).args}
+        words = {str(term) for goal in self.goals for term in inner_goal(goal).args}
         return frozenset(words & set(self.parameters))
-
-    def claims_of(self, name: str) -> tuple[Claim, ...]:
-        """Return the claims about one parameter, in the order of start.lp; () when there are none."""
-        return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), SourceSpan(0, 0, 0)))
 
 
 def read_task(start: Path | str, goal: Path | str) -> Task:
@@ -91,6 +77,17 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
         except BadInputError as bad:
             problems += bad.problems
             sources.append(None)
+    return _task_from(sources, problems)
+
+
+def task_from_texts(start: str, goal: str, name: str = "task") -> Task:
+    """Return the task that the texts of start.lp and goal.lp state; errors in them name `name`."""
+    sources = [source_from_bytes(f"{name}: {part}", text.encode()) for part, text in (("start", start), ("goal", goal))]
+    return _task_from(sources, [])
+
+
+def _task_from(sources: Sequence[Source | None], problems: list[Problem]) -> Task:
+    """Return the task of two sources, start and goal; raise BadInputError for their problems, and for given ones."""
     start_facts, goal_facts = (
         _checked_facts(s, v, problems) for s, v in zip(sources, (START_VOCABULARY, GOAL_VOCABULARY), strict=True)
     )
@@ -181,7 +178,6 @@ def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
 
 def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]) -> dict[str, Parameter]:
     """Return the parameters that start.lp introduces, by name in the order of the facts."""
-    # Append problems to `problems`.
     found: dict[str, Parameter] = {}
     for fact in facts:
         if fact.name not in PARAMETER_KINDS:
@@ -207,12 +203,7 @@ def _claims(
         if fact.name in PARAMETER_KINDS:
             continue
         claim = _claim(fact)
-        name = claim.fact.args[0]
-        if str(name) not in parameters:
-            problems.append(source.problem(name.span, *_not_introduced(str(name), parameters, ("object",))))
-        elif parameters[str(name)].kind != "object":
-            what = f"{name} is a {parameters[str(name)].kind}; only objects have a {claim.fact.name}"
-            problems.append(source.problem(name.span, what))
+        problems += _wrong_arguments(source, claim.fact, CLAIM_WORDS[claim.fact.name].parameters, parameters)
         if claim.fact in confidences and confidences[claim.fact] != claim.confidence:
             what = f"{claim.fact} is claimed with confidence {confidences[claim.fact]} and {claim.confidence}"
             problems.append(source.problem(fact.span, what))
@@ -232,10 +223,10 @@ def _claim(fact: Fact) -> Claim:
 
 
 def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
-    """Yield a problem for each certain claim that cannot hold with the first one of its kind on that object."""
+    """Yield a problem for each certain claim that cannot hold with the first one of its kind on that thing or door."""
     certain: dict[tuple[str, Term], Fact] = {}
     for claim in claims:
-        if claim.confidence < CERTAIN_CONFIDENCE:
+        if claim.confidence < CERTAIN_CONFIDENCE or not CLAIM_WORDS[claim.fact.name].one:
             continue
         key = (claim.fact.name, claim.fact.args[0])
         before = certain.setdefault(key, claim.fact)
@@ -246,7 +237,7 @@ def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
 
 
 def _compatible(one: Fact, other: Fact) -> bool:
-    """Return whether two claims of the same kind (shape or colour) about one object can both hold."""
+    """Return whether two claims of the same kind, such as shape, about one thing can both hold."""
     first, second = str(one.args[1]), str(other.args[1])
     if first == second:
         return True
@@ -263,7 +254,7 @@ def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[
     """Yield the problems of goals: their order, their arguments, and an empty goal."""
     has_goal = False
     for fact in goals:
-        goal = _inner_goal(fact)
+        goal = inner_goal(fact)
         if fact.name == "first" and has_goal:
             yield source.problem(fact.span, "first(...) must come before every other step", "write then(...)")
         if fact.name == "then" and not has_goal:
@@ -274,11 +265,7 @@ def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[
             what = f"prefer(...) needs a goal that a place fulfils; {goal.name} is one of the whole way"
             yield source.problem(goal.span, what, f"state {goal} as a goal, or leave it out")
         has_goal = has_goal or (goal.name not in CONSTRAINT_GOALS and fact.name != "prefer")
-        for term, kinds in zip(goal.args, GOAL_ARGUMENT_KINDS[goal.name], strict=True):
-            if kinds is not None and isinstance(term, Symbol) and not term.args:
-                yield from _wrong_kind(source, goal, term, kinds, parameters)
-        if len(goal.args) == 2 and goal.args[0] == goal.args[1]:
-            yield source.problem(goal.span, f"{goal.name} relates {goal.args[0]} to itself")
+        yield from _wrong_arguments(source, goal, GOAL_WORDS[goal.name].parameters, parameters)
         if fact.name == "prefer" and goal in goals:
             yield source.problem(fact.span, f"{goal} is a goal already, and no wish", "leave out one of the two")
     if not has_goal:
@@ -287,11 +274,22 @@ def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[
         )
 
 
-def _inner_goal(fact: Fact) -> Fact:
+def inner_goal(fact: Fact) -> Fact:
     """Return the goal inside `first(G)`, `then(G)` or `prefer(G, N)`; any other goal as it is."""
     inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
     assert isinstance(inner, Symbol)
     return inner
+
+
+def _wrong_arguments(
+    source: Source, fact: Fact, taken: Sequence[tuple[str, ...] | None], parameters: Mapping[str, Parameter]
+) -> Iterator[Problem]:
+    """Yield the problems of the parameters of a goal or a claim; `taken`: the kinds that each argument takes."""
+    for term, kinds in zip(fact.args, taken, strict=True):
+        if kinds is not None and isinstance(term, Symbol) and not term.args:
+            yield from _wrong_kind(source, fact, term, kinds, parameters)
+    twice = [term for term, after in zip(fact.args, fact.args[1:], strict=False) if term == after]
+    yield from (source.problem(fact.span, f"{fact.name} relates {term} to itself") for term in twice)
 
 
 def _wrong_kind(

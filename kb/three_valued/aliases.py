@@ -13,11 +13,8 @@ from utak.kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT
 from utak.kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
-UTAK_TYPES = (
-    KIND_ARGUMENT,
-    TASK_GOAL_ARGUMENT,
-    CIRCUMSTANCE_ARGUMENT,
-)  # the types of arguments in which facts say `utak`
+# The types of arguments in which facts say `utak`
+UTAK_TYPES = (KIND_ARGUMENT, TASK_GOAL_ARGUMENT, CIRCUMSTANCE_ARGUMENT)
 
 
 def rename_utak_to_org(clause: Clause) -> Clause:

@@ -10,26 +10,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import clingo
-from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator, Sign, UnaryOperator
+from clingo.ast import AST, ASTType, BinaryOperator, Sign, UnaryOperator
 
 from utak.kb.language.integers import MIN_INT32
 from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS
+from utak.kb.tracing.syntax import FUNCTIONS, SIGNS
 
 # clingo's operators as written in programs.
-COMPARISON_SIGNS = {
-    ComparisonOperator.GreaterThan: ">", ComparisonOperator.LessThan: "<", ComparisonOperator.LessEqual: "<=",
-    ComparisonOperator.GreaterEqual: ">=", ComparisonOperator.NotEqual: "!=", ComparisonOperator.Equal: "=",
-}  # fmt: skip
 BINARY_SIGNS = {
     BinaryOperator.XOr: "^", BinaryOperator.Or: "?", BinaryOperator.And: "&", BinaryOperator.Plus: "+",
     BinaryOperator.Minus: "-", BinaryOperator.Multiplication: "*", BinaryOperator.Division: "/",
     BinaryOperator.Modulo: "\\", BinaryOperator.Power: "**",
 }  # fmt: skip
 UNARY_SIGNS = {UnaryOperator.Minus: "-", UnaryOperator.Negation: "~", UnaryOperator.Absolute: "|"}
-AGGREGATE_FUNCTIONS = {
-    AggregateFunction.Count: "#count", AggregateFunction.Sum: "#sum", AggregateFunction.SumPlus: "#sum+",
-    AggregateFunction.Min: "#min", AggregateFunction.Max: "#max",
-}  # fmt: skip
 
 
 class ClauseError(Exception):
@@ -175,8 +168,6 @@ class _Translator:
 
     def clause(self, rule: AST) -> Clause:
         """Return a rule without pools as a clause; raise ClauseError for what is not supported."""
-        # The clause holds the head atom (None for a constraint), the literals of the body in order, then a comparison
-        # for each interval in an argument of the head, and the place of the rule.
         head = self._head(rule.head)
         waiting, self._intervals = self._intervals, []
         return Clause(head, (*self._conjunction(rule.body), *waiting), place_of(rule))
@@ -212,7 +203,7 @@ class _Translator:
         if atom.ast_type == ASTType.SymbolicAtom:
             return self._atom(node)
         if atom.ast_type == ASTType.Comparison:
-            rest = tuple((COMPARISON_SIGNS[guard.comparison], self._term(guard.term, True)) for guard in atom.guards)
+            rest = tuple((SIGNS[guard.comparison], self._term(guard.term, True)) for guard in atom.guards)
             return Comparison(self._term(atom.term, True), rest, node.sign == Sign.Negation, at)
         if atom.ast_type in (ASTType.BodyAggregate, ASTType.Aggregate):
             return self._aggregate(atom, node.sign == Sign.Negation, at)
@@ -232,7 +223,7 @@ class _Translator:
         sides = ((node.left_guard, 0), (node.right_guard, 1))
         guards = [
             (
-                COMPARISON_SIGNS[guard.comparison] if left == 0 else MIRRORED_SIGNS[COMPARISON_SIGNS[guard.comparison]],
+                SIGNS[guard.comparison] if left == 0 else MIRRORED_SIGNS[SIGNS[guard.comparison]],
                 self._term(guard.term),
             )
             for guard, left in sides
@@ -242,7 +233,7 @@ class _Translator:
             elements = [self._choice(number, element) for number, element in enumerate(node.elements)]
             return Aggregate("#count", tuple(elements), tuple(guards), negated, at)
         elements = [self._element(element.terms, element.condition) for element in node.elements]
-        return Aggregate(AGGREGATE_FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
+        return Aggregate(FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
 
     def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> AggregateElement:
         """Return an element of an aggregate: its tuple of terms, and its condition."""

@@ -109,7 +109,6 @@ class _Search:
 
     def matches(self, atom: Atom, given: Bindings, possible: bool) -> Iterator[Bindings]:
         """Yield the bindings, `given` included, with which an atom without negation holds."""
-        # One for each matching row.
         fixed = [self.settled_value(part, given) for part in atom.parts]
         for row in self.beliefs.rows(atom.signature, fixed, possible, self.reads_fixed_confidence(atom)):
             found = self.unify_all(atom.parts, row, given, possible)
@@ -229,13 +228,9 @@ class _Search:
     def truth_of_comparison(self, literal: Comparison, given: Bindings) -> TruthValue:
         """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not."""
         # None when that is not known.
-        truth: TruthValue = True
-        left = literal.first
-        for sign, right in literal.rest:
-            held = self.truth_of_pair(sign, left, right, given)
-            truth = False if held is False else None if held is None and truth is not False else truth
-            left = right
-        return truth if not literal.negated or truth is None else not truth
+        terms = [literal.first, *(term for _, term in literal.rest)]
+        pairs = zip(terms, literal.rest, strict=False)
+        return truth_of_all([self.truth_of_pair(sign, left, right, given) for left, (sign, right) in pairs], literal)
 
     def truth_of_pair(self, sign: str, left: ClauseTerm, right: ClauseTerm, given: Bindings) -> TruthValue:
         """Return the truth of one comparison; between intervals, whether it holds for some of their numbers."""
@@ -293,11 +288,9 @@ class _Search:
         if variable is not None and isinstance(value, Unknown) and not self.possible:
             return
         found = given if variable is None else {**given, variable.name: value}
-        truth: TruthValue = True
-        for sign, term in literal.guards:
-            held = compare(sign, value_of(term, found), value, self.beliefs.known_names)
-            truth = False if held is False else None if held is None and truth is not False else truth
-        if self.passes(truth if not literal.negated or truth is None else not truth):
+        names = self.beliefs.known_names
+        truths = [compare(sign, value_of(term, found), value, names) for sign, term in literal.guards]
+        if self.passes(truth_of_all(truths, literal)):
             yield found
 
     def count_element(self, element: AggregateElement, given: Bindings, tally: Tally) -> None:
@@ -306,6 +299,12 @@ class _Search:
         for possible in (False, True):
             for found in find_bindings(element.condition, given, self.beliefs, possible, fixed_confidences):
                 tally.add(tuple(value_of(term, found) for term in element.terms), possible)
+
+
+def truth_of_all(truths: Sequence[TruthValue], literal: Comparison | Aggregate) -> TruthValue:
+    """Return whether all of some truths hold; when the literal is negated, whether one does not."""
+    truth = False if False in truths else None if None in truths else True
+    return truth if not literal.negated or truth is None else not truth
 
 
 def fixed_confidence_variables(body: Sequence[Literal], given_out: Any) -> frozenset[str]:

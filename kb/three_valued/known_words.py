@@ -7,7 +7,7 @@ import clingo
 from utak.kb.language.arguments import ArgumentType, abbreviated
 from utak.kb.language.diagnostics import SourceSpan, did_you_mean
 from utak.kb.language.terms import Number, Symbol, Term, Text
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature, hint_for
 from utak.kb.three_valued.clauses import (
     Aggregate,
     Atom,
@@ -46,7 +46,7 @@ def check_body(body: Sequence[Literal], known: Collection[Signature], names: Con
             for slot, part in zip(BELIEF_PREDICATES[atom.signature].arguments, atom.parts, strict=True):
                 check_constant(slot, part, names)
     for literals in _conjunctions(body):
-        slots = {name: slot for atom in literals if isinstance(atom, Atom) for name, slot in _variable_types(atom)}
+        slots = {name: slot for name, slot in types_of_variables(literals) if slot.limits is None}
         for name, other in _equated(literals):
             if name in slots:
                 check_constant(slots[name], other, names)
@@ -57,9 +57,7 @@ def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
     if atom.signature in known:
         return
     name, arity = atom.signature
-    forms = sorted(f"{other}/{n}" for other, n in known if other == name)
-    hint = f"there is {', '.join(forms)}" if forms else did_you_mean(name, {other for other, _ in known})
-    raise ClauseError(f"unknown predicate {name}/{arity}", atom.at, hint)
+    raise ClauseError(f"unknown predicate {name}/{arity}", atom.at, hint_for(name, known))
 
 
 def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -> None:
@@ -77,7 +75,6 @@ def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -
 
 def as_fact_term(value: Value) -> Term:
     """Return a known value, an integer or a clingo symbol, as a term of a fact file, which argument types can check."""
-    # Its place is NO_PLACE, since it stands in no file.
     if isinstance(value, int):
         return Number(value, NO_PLACE)
     if value.type == clingo.SymbolType.String:
@@ -108,15 +105,6 @@ def types_of_variables(body: Sequence[Literal]) -> Iterator[tuple[str, ArgumentT
             for slot, part in zip(BELIEF_PREDICATES[atom.signature].arguments, atom.parts, strict=True):
                 if isinstance(part, Variable):
                     yield part.name, slot
-
-
-def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
-    """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out."""
-    # One pair for each such argument, in order.
-    slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
-    for slot, part in zip(slots, atom.parts, strict=False):
-        if isinstance(part, Variable) and slot.limits is None:
-            yield part.name, slot
 
 
 def _equated(literals: Iterable[Literal]) -> Iterator[tuple[str, Constant]]:

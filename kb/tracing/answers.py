@@ -1,8 +1,8 @@
 """Programs grounded once to be asked often: their whole answer sets, the instances of their rules, and their costs."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import clingo
 
@@ -10,6 +10,7 @@ from utak.kb.tracing.instrument import instance_rules, relaxed_rules, weight_rul
 from utak.kb.tracing.syntax import ParsedProgram, ProgramPart, parsed
 
 MAX_TRACE_CONFLICTS = 100_000  # conflicts of clingo's search for one answer; a convention
+Read = TypeVar("Read")
 Assumptions = Sequence[tuple[clingo.Symbol, bool]]
 
 
@@ -36,7 +37,7 @@ class GroundedProgram:
             self.program: ParsedProgram = parsed(self.parts)
         except RuntimeError as error:
             raise TraceError(f"the program cannot be read: {error}") from None
-        self._control = _grounded([*(part.text for part in self.parts), _weight_text(self.parts)], self.facts)
+        self._control = grounded([*(part.text for part in self.parts), _weight_text(self.parts)], self.facts)
         self._relaxed: clingo.Control | None = None
 
     def whole_answer(self, answer: Iterable[str]) -> list[clingo.Symbol]:
@@ -44,17 +45,10 @@ class GroundedProgram:
         # Raises TraceError when the program has no such answer set.
         given = {clingo.parse_term(atom) for atom in answer}
         assumptions = self._shown_as(given)
-        best: list[clingo.Symbol] = []
-
-        def keep(model: clingo.Model) -> None:
-            """Keep all atoms of a model but the helping ones."""
-            nonlocal best
-            best = [atom for atom in model.symbols(atoms=True) if not atom.name.startswith("trace__")]
-
-        _solve(self._control, assumptions, keep)
-        if not best and not self._has_answer(assumptions):
+        atoms, _ = best_model(self._control, assumptions, lambda model: model.symbols(atoms=True))
+        if atoms is None and not self._control.solve(assumptions=list(assumptions)).satisfiable:
             raise TraceError("the recorded answer is no answer of this program")
-        return best
+        return [atom for atom in atoms or () if not atom.name.startswith("trace__")]
 
     def priced_answer(self, answer: Iterable[clingo.Symbol]) -> PricedAnswer:
         """Return the answer set with the given shown atoms, with its costs; TraceError when there is none."""
@@ -73,33 +67,24 @@ class GroundedProgram:
 
     def _best(self, assumptions: Assumptions) -> PricedAnswer | None:
         """Return the best answer set under assumptions about atoms that rules can derive; None when there is none."""
-        found: list[PricedAnswer] = []
-
-        def keep(model: clingo.Model) -> None:
-            """Keep a model with its costs."""
-            found[:] = [_priced(model.symbols(shown=True), False)]
-
-        proved = _solve(self._control, assumptions, keep)
-        return found[0]._replace(proved=proved) if found else None
+        shown, proved = best_model(self._control, assumptions, lambda model: model.symbols(shown=True))
+        return None if shown is None else _priced(shown, proved)
 
     def broken_constraints(self, assumptions: Assumptions) -> list[tuple[int, tuple[str, ...]]] | None:
         """Return the fewest constraints that are broken where some atoms hold: (unit, values of its variables)."""
         # None when there is no answer even without constraints.
         if self._relaxed is None:
             rules = [*relaxed_rules(self.program), *(f"#defined {n}/{a}." for n, a in self.program.defined)]
-            self._relaxed = _grounded(rules, self.facts)
+            self._relaxed = grounded(rules, self.facts)
         known = self._relaxed.symbolic_atoms
         if any(value and known[symbol] is None for symbol, value in assumptions):
             return None
-        found: list[list[tuple[int, tuple[str, ...]]]] = []
-
-        def keep(model: clingo.Model) -> None:
-            """Keep the broken constraints of a model."""
-            broken = [atom for atom in model.symbols(atoms=True) if atom.name == "trace__broken"]
-            found[:] = [sorted((atom.arguments[0].number, _texts(atom.arguments[1])) for atom in broken)]
-
-        _solve(self._relaxed, [(s, v) for s, v in assumptions if known[s] is not None], keep)
-        return found[0] if found else None
+        possible = [(symbol, value) for symbol, value in assumptions if known[symbol] is not None]
+        atoms, _ = best_model(self._relaxed, possible, lambda model: model.symbols(atoms=True))
+        if atoms is None:
+            return None
+        broken = (atom.arguments for atom in atoms if atom.name == "trace__broken")
+        return sorted((unit.number, _texts(values)) for unit, values in broken)
 
     def _shown_as(self, given: set[clingo.Symbol]) -> Assumptions:
         """Return the assumptions that exactly the given atoms are shown; TraceError for an atom that cannot hold."""
@@ -113,10 +98,6 @@ class GroundedProgram:
                 if atom.symbol not in given:
                     assumptions.append((atom.symbol, False))
         return assumptions
-
-    def _has_answer(self, assumptions: Assumptions) -> bool:
-        """Return whether the program has an answer set under assumptions."""
-        return bool(self._control.solve(assumptions=list(assumptions)).satisfiable)
 
 
 @lru_cache(maxsize=64)
@@ -138,21 +119,15 @@ def _instance_text(parts: tuple[ProgramPart, ...]) -> str:
 
 def instances(parts: tuple[ProgramPart, ...], atoms: Iterable[clingo.Symbol]) -> list[clingo.Symbol]:
     """Return the helping atoms (kb.tracing.instrument) of all instances of a program that hold in an answer set."""
-    control = _grounded([_instance_text(parts)], [str(atom) for atom in atoms], messages_count=False)
+    control = grounded([_instance_text(parts)], [str(atom) for atom in atoms], messages_count=False)
     found = [atom for atom in control.symbolic_atoms if atom.symbol.name.startswith("trace__")]
     if all(atom.is_fact for atom in found):
         return [atom.symbol for atom in found]
-    holding: list[clingo.Symbol] = []
-
-    def keep(model: clingo.Model) -> None:
-        """Keep the helping atoms of the only model."""
-        holding[:] = [atom for atom in model.symbols(atoms=True) if atom.name.startswith("trace__")]
-
-    _solve(control, (), keep)
-    return holding
+    holding, _ = best_model(control, (), lambda model: model.symbols(atoms=True))  # there is one model
+    return [atom for atom in holding or () if atom.name.startswith("trace__")]
 
 
-def _grounded(texts: Sequence[str], facts: Sequence[str], messages_count: bool = True) -> clingo.Control:
+def grounded(texts: Sequence[str], facts: Sequence[str], messages_count: bool = True) -> clingo.Control:
     """Return a program grounded with its facts."""
     # Raises TraceError with clingo's first message.
     messages: list[str] = []
@@ -172,9 +147,13 @@ def _grounded(texts: Sequence[str], facts: Sequence[str], messages_count: bool =
     return control
 
 
-def _solve(control: clingo.Control, assumptions: Assumptions, keep: Any) -> bool:
-    """Search the best model, give each better one to `keep`, and return whether the search was complete."""
-    return bool(control.solve(assumptions=list(assumptions), on_model=keep).exhausted)
+def best_model(
+    control: clingo.Control, assumptions: Sequence[Any], read: Callable[[clingo.Model], Read]
+) -> tuple[Read | None, bool]:
+    """Return what is read of the best model, None without one, and whether the search for it was complete."""
+    found: list[Read] = []
+    result = control.solve(assumptions=list(assumptions), on_model=lambda model: found.append(read(model)))
+    return found[-1] if found else None, bool(result.exhausted)
 
 
 def _priced(shown: Iterable[clingo.Symbol], proved: bool) -> PricedAnswer:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import clingo
-from clingo.ast import AST, ASTType, BinaryOperator, ComparisonOperator, Transformer, UnaryOperator
+from clingo.ast import AST, ASTType, BinaryOperator, ComparisonOperator, UnaryOperator
 
 GREATEST_NUMBER = 1_000_000  # the greatest number that is looked for, as in kb.reasoning.interfaces
 Calculation = Callable[[Mapping[str, int]], int | None]  # from the values of variables to a number; None without one
@@ -35,13 +35,6 @@ def calculation(term: AST, constants: Mapping[str, clingo.Symbol]) -> Calculatio
         left, right = (calculation(part, constants) for part in (term.left, term.right))
         return _binary(term.operator_type, left, right)
     return lambda _values: None
-
-
-def names_in(term: AST) -> tuple[str, ...]:
-    """Return the names of the variables of a term, each once."""
-    collector = _NameCollector()
-    collector.visit(term)
-    return tuple(dict.fromkeys(collector.names))
 
 
 def turning_numbers(one: Relation, target: str, values: Mapping[str, int]) -> list[int]:
@@ -124,15 +117,3 @@ def _binary(operator: int, left: Calculation, right: Calculation) -> Calculation
         return quotient if operator == BinaryOperator.Division else a - quotient * b
 
     return calculate
-
-
-class _NameCollector(Transformer):
-    """Collects the names of variables in `names`; clingo calls the `visit` method."""
-
-    def __init__(self) -> None:
-        self.names: list[str] = []
-
-    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Append the name of a variable to `names`; return the node."""
-        self.names.append(node.name)
-        return node

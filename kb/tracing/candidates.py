@@ -5,6 +5,7 @@ variable that stands nowhere else in the rule may have any value, so one is enou
 of kb.tracing.domains.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations, islice, product
 from math import prod
@@ -15,17 +16,14 @@ from clingo.ast import AST, AggregateFunction, ASTType
 
 from utak.kb.language.vocabulary import Signature
 from utak.kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
-from utak.kb.tracing.syntax import ParsedProgram, Unit, global_variables_of
+from utak.kb.tracing.syntax import ParsedProgram, Unit, global_variables_of, variables_in
 
 MAX_FACTS_OF_ATOM = 200  # candidates for one atom of a rule; a convention
 MAX_CANDIDATES = 3_000  # candidates in all; a convention
 MAX_CANDIDATES_OF_CHOICE = 300  # candidates in all where costs decide, which is dear to check; a convention
 MAX_CANDIDATES_OF_SUM = 8  # candidates in all where facts are summed up: a sum of n has up to 2**n values; a convention
 MAX_COMPARED = 40  # given facts of a predicate with which a candidate is compared; a convention
-FREE_ARGUMENT, ANY_ARGUMENT = (
-    "free",
-    "any",
-)  # what a pattern says of an argument that is not fixed: it matters, or it does not
+FREE_ARGUMENT, ANY_ARGUMENT = "free", "any"  # what a pattern says of an open argument: it matters, or it does not
 PatternPart = clingo.Symbol | str  # a value, FREE_ARGUMENT or ANY_ARGUMENT
 
 
@@ -188,7 +186,7 @@ def _unified(head: AST, pattern: AtomPattern, domains: Domains) -> dict[str, Pat
 
 def _body_patterns(unit: Unit, bound: dict[str, PatternPart], domains: Domains) -> Iterator[AtomPattern]:
     """Yield the patterns of the atoms in the body and in the conditions of a unit, with what is fixed."""
-    counts = _occurrences(unit)
+    counts = Counter(variables_in(unit.node))
     local = set(counts) - set(global_variables_of(unit.node))
     heads = list(map(str, stated_by(unit)))
     for literal in atoms_in(unit):
@@ -203,30 +201,11 @@ def _body_patterns(unit: Unit, bound: dict[str, PatternPart], domains: Domains) 
                 name = term.name
                 fixed = bound.get(name) if name not in local or name in bound else None
                 parts.append(
-                    fixed
-                    if fixed is not None
-                    else ANY_ARGUMENT
-                    if counts.get(name, 1) < 2 or name == "_"
-                    else FREE_ARGUMENT
+                    fixed if fixed is not None else ANY_ARGUMENT if counts[name] < 2 or name == "_" else FREE_ARGUMENT
                 )
             else:
                 parts.append(FREE_ARGUMENT)
         yield AtomPattern(atom_name(literal), tuple(parts))
-
-
-def _occurrences(unit: Unit) -> dict[str, int]:
-    """Return how often each variable stands in a unit."""
-    names: dict[str, int] = {}
-    waiting: list[object] = [unit.node]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, AST):
-            if node.ast_type == ASTType.Variable:
-                names[node.name] = names.get(node.name, 0) + 1
-            waiting += [getattr(node, key) for key in node.child_keys]
-        elif node is not None and not isinstance(node, str | int):
-            waiting += list(node)  # type: ignore[call-overload]
-    return names
 
 
 def _instances(

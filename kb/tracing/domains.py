@@ -9,10 +9,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice, permutations, product
 
 import clingo
-from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign, Transformer
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign
 
-from utak.kb.tracing.calculations import Relation, calculation, names_in, turning_numbers
-from utak.kb.tracing.syntax import ParsedProgram, Unit, head_elements
+from utak.kb.tracing.calculations import Relation, calculation, turning_numbers
+from utak.kb.tracing.syntax import ParsedProgram, Unit, head_elements, nodes_in, variables_in
 
 MAX_NUMBERS = 30  # values of one class, beyond which no number is added; a convention
 MAX_COMBINATIONS = 100  # values of the other variables of a comparison that are tried; a convention
@@ -123,8 +123,9 @@ class Domains:
         second = calculation(right, self._constants)
         if isinstance(left, tuple):
             (name,) = left
-            return Relation(lambda values: values.get(name), second, (name, *names_in(right)), sign, fixed)
-        names = tuple(dict.fromkeys((*names_in(left), *names_in(right))))
+            names = tuple(dict.fromkeys((name, *variables_in(right))))
+            return Relation(lambda values: values.get(name), second, names, sign, fixed)
+        names = tuple(dict.fromkeys((*variables_in(left), *variables_in(right))))
         return Relation(calculation(left, self._constants), second, names, sign, fixed)
 
     def _are_equal_variables(self, number: int, left: AST, right: AST, sign: int) -> bool:
@@ -164,7 +165,7 @@ class Domains:
     def _add_prices(self, number: int, unit: Unit) -> None:
         """Add to the numbers in the price of a weak constraint those beside them, and 0."""
         if unit.node.ast_type == ASTType.Minimize:
-            for name in names_in(unit.node.weight):
+            for name in dict.fromkeys(variables_in(unit.node.weight)):
                 near = [value for known in self._numbers((number, name)) for value in (known - 1, known + 1)]
                 for value in (0, *near):
                     if value >= 0:
@@ -245,19 +246,4 @@ def _aggregates(unit: Unit) -> Iterator[AST]:
 
 def _literals_in(unit: Unit) -> list[AST]:
     """Return the literals of a unit, at whatever depth."""
-    collector = _LiteralCollector()
-    collector.visit(unit.node)
-    return collector.found
-
-
-class _LiteralCollector(Transformer):
-    """Collects literals in `found`; clingo calls the `visit` method."""
-
-    def __init__(self) -> None:
-        self.found: list[AST] = []
-
-    def visit_Literal(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Append a literal to `found`, and visit its parts; return the node."""
-        self.found.append(node)
-        self.visit_children(node)
-        return node
+    return [part for part in nodes_in(unit.node) if part.ast_type == ASTType.Literal]

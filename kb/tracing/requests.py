@@ -38,14 +38,12 @@ def respond(request: JsonValues) -> JsonValues:
 def _candidates(grounded: GroundedProgram, atom: str, known: Sequence[str]) -> JsonValues:
     """Return the facts that might be given besides for an atom to hold, as JSON values."""
     facts, atoms = ([clingo.parse_term(text) for text in texts] for texts in (grounded.facts, known))
-    found = candidate_facts(grounded.program, facts, atoms, clingo.parse_term(atom))
-    return {**found._asdict(), "facts": list(found.facts), "removable": list(found.removable)}
+    return candidate_facts(grounded.program, facts, atoms, clingo.parse_term(atom))._asdict()
 
 
 def _change(grounded: GroundedProgram, atom: str, candidates: JsonValues) -> JsonValues:
     """Return the least change with which an atom holds, as JSON values."""
-    facts, removable = tuple(candidates["facts"]), tuple(candidates["removable"])
-    given = CandidateFacts(facts, removable, candidates["by_choice"], candidates["cut"])
+    given = CandidateFacts(**candidates)
     return least_change(grounded.program, grounded.facts, given, clingo.parse_term(atom))._asdict()
 
 
@@ -63,15 +61,7 @@ def _statements(parts: tuple[ProgramPart, ...]) -> JsonValues:
         raise TraceError(f"the program cannot be read: {error}") from None
     return {
         "statements": [
-            {
-                "file": one.file,
-                "line": one.line,
-                "column": one.column,
-                "text": one.text,
-                "kind": one.kind,
-                "variables": list(one.variables),
-            }
-            for one in program.statements
+            {key: value for key, value in one._asdict().items() if key != "node"} for one in program.statements
         ],
         "units": [
             {

@@ -9,7 +9,7 @@ from typing import Any
 
 import clingo
 
-from utak.kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
+from utak.kb.tracing.answers import best_model, grounded
 from utak.kb.tracing.candidates import CandidateFacts
 from utak.kb.tracing.syntax import ParsedProgram
 
@@ -65,23 +65,19 @@ class SwitchedProgram:
 
     def _solved(self, assumptions: Sequence[int], mode: str) -> FactChange | None:
         """Return the switches that are on in the best answer, or in any one with the mode `ignore`; or None."""
-        best: list[FactChange] = []
-
-        def keep(model: clingo.Model) -> None:
-            """Keep the change of a model."""
-            best[:] = [tuple(index for index, literal in enumerate(self._switches) if model.is_true(literal))]
-
         settings: Any = self._control.configuration.solve
         settings.opt_mode = mode
-        self._control.solve(assumptions=list(assumptions), on_model=keep)
+        change, _ = best_model(
+            self._control,
+            assumptions,
+            lambda model: tuple(index for index, literal in enumerate(self._switches) if model.is_true(literal)),
+        )
         settings.opt_mode = "opt"
-        return best[0] if best else None
+        return change
 
     def _best_cost(self, assumptions: Sequence[int]) -> list[int] | None:
         """Return the cost of the best answer under assumptions; None when there is none."""
-        costs: list[list[int]] = []
-        self._control.solve(assumptions=list(assumptions), on_model=lambda model: costs.append(list(model.cost)))
-        return costs[-1] if costs else None
+        return best_model(self._control, assumptions, lambda model: list(model.cost))[0]
 
 
 def _switched(
@@ -104,12 +100,4 @@ def _switched(
         lines.append(":~ trace__gone(I). [1@2,0,I]")
         lines.append(":~ trace__added(I). [1@2,1,I]")
         lines.append(":~ trace__added(I). [I+1@1,1,I]")
-    control = clingo.Control(["--stats=0"], logger=lambda _code, _text: None, message_limit=20)
-    try:
-        control.add("base", [], "\n".join(lines))
-        control.ground([("base", [])])
-    except RuntimeError as error:
-        raise TraceError(str(error)) from None
-    settings: Any = control.configuration.solve
-    settings.solve_limit = f"{MAX_TRACE_CONFLICTS},umax"
-    return control
+    return grounded(lines, (), messages_count=False)

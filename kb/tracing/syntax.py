@@ -110,7 +110,7 @@ def global_variables_of(node: AST) -> tuple[str, ...]:
         outer = [*head, *node.body]
     for part in outer:
         for inner in _outer_parts(part):
-            found |= dict.fromkeys(_variable_names(inner))
+            found |= dict.fromkeys(variables_in(inner))
     found.pop("_", None)
     return tuple(found)
 
@@ -188,27 +188,27 @@ def _outer_parts(part: AST) -> Iterator[AST]:
         yield part
 
 
-def _variable_names(node: AST) -> list[str]:
-    """Return the names of the variables in a part of a syntax tree, in order."""
-    collector = _VariableCollector()
-    collector.visit(node)
-    return collector.found
+def nodes_in(node: AST) -> Iterator[AST]:
+    """Yield a syntax tree and all its parts, each before its own parts, in order."""
+    yield node
+    for part in parts_of(node):
+        yield from nodes_in(part)
+
+
+def parts_of(node: AST) -> Iterator[AST]:
+    """Yield the direct parts of a syntax tree, in order."""
+    for key in node.child_keys:
+        inner = getattr(node, key)
+        yield from [inner] if isinstance(inner, AST) else inner or ()
+
+
+def variables_in(node: AST) -> list[str]:
+    """Return the names of the variables in a syntax tree, in order."""
+    return [part.name for part in nodes_in(node) if part.ast_type == ASTType.Variable]
 
 
 def _ignore_message(_code: clingo.MessageCode, _message: str) -> None:
     """Do nothing with a message of clingo's: a program that cannot be parsed raises RuntimeError besides."""
-
-
-class _VariableCollector(Transformer):
-    """Collects the names of variables in `found`; clingo calls the `visit` methods."""
-
-    def __init__(self) -> None:
-        self.found: list[str] = []
-
-    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Append the name of a variable to `found`; return the node."""
-        self.found.append(node.name)
-        return node
 
 
 class _AnyNamer(Transformer):

@@ -46,7 +46,7 @@ def known_floor(model: WorldModel) -> Bools:
         if node.moved:
             under = model.view.state == OCCUPIED
             if node.polygon is not None:
-                under &= model.mask_within(patch_of_polygon(node.polygon))
+                under &= model.mask(patch_of_polygon(node.polygon))
             if model.floor_under_moved is not None:
                 under |= model.floor_under_moved
             mask |= (model.labels == label_of(node.region)) & under

@@ -103,7 +103,6 @@ def _passages(screen: Screen) -> list[Passage]:
 
 def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:
     """Return the squares along a line across a passage, at two samples a square."""
-    # On one side of it, and on the other.
     (ax, ay), (bx, by) = line
     one, two = passage.mouths
     sides = (1,) if line == one != two else (-1,) if line == two != one else (-1, 1)

@@ -15,10 +15,11 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.localisation.field_account import Accommodation
 from utak.kb.mapping.occupancy import OPEN
-from utak.kb.reasoning.user_rules import world_facts_named
+from utak.kb.reasoning.interfaces import WORLD_FACTS_THERE
+from utak.kb.reasoning.user_rules import predicates_read
 from utak.kb.world.corners import Corner
 from utak.kb.world.evidence import evidence
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
@@ -96,7 +97,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
 
 def facts_for_rules(encoding: str, rules: Sequence[Path], model: WorldModel, places: Places) -> tuple[str, ...]:
     """Return the facts of the world model that users' rules name in an encoding which works without them."""
-    named = world_facts_named(encoding, rules)
+    named = predicates_read(encoding, rules).intersection(name for name, _ in WORLD_FACTS_THERE[encoding])
     if not named:
         return ()
     facts = [fact for fact in model_facts(model, places) if fact.partition("(")[0] in named]

@@ -29,15 +29,12 @@ from utak.kb.perception.regions import Percept
 
 MAX_SMALL_FRAME_DOUBT = math.radians(5)  # radians: two frames that differ less may explain the same impressions; tuned
 MAX_SQUARE_SHIFT = 0.3  # squares: a square that lies elsewhere by at most this is still the same; tuned
-MAX_FREE_PROBABILITY = (
-    0.06  # probability: a square that is occupied at most so likely counts as floor; tuned on random worlds
-)
-MIN_OBSTACLE_PROBABILITY = (
-    0.5  # a square that is occupied at least so likely may be part of a thing: more likely than not
-)
-MAX_CLEAR_PROBABILITY = (
-    0.12  # probability: a square that is occupied at most so likely, or free so, is not in doubt; tuned
-)
+# Probability: a square that is occupied at most so likely counts as floor; tuned on random worlds
+MAX_FREE_PROBABILITY = 0.06
+# A square that is occupied at least so likely may be part of a thing: more likely than not
+MIN_OBSTACLE_PROBABILITY = 0.5
+# Probability: a square that is occupied at most so likely, or free so, is not in doubt; tuned
+MAX_CLEAR_PROBABILITY = 0.12
 PROBABLY_VERGE = 51  # percent: confidence from which a region is taken for verge: more likely than not
 FACT_UNITS_PER_SQUARE = 100  # lengths in facts, given or shown by encodings, are hundredths of squares; convention
 ROOT_NODE, FLOOR_NODE, VERGE_NODE = "org", "floor", "verge"  # names of the nodes that are no objects
@@ -226,16 +223,7 @@ class WorldModel:
         return mask
 
     def mask(self, patch: Patch) -> Bools:
-        """Return the (rows, columns) mask, on the view's arrays, of a patch that lies within them."""
-        # A patch that reaches beyond them raises ValueError or gives a wrong mask.
-        mask = np.zeros(self.labels.shape, np.bool_)
-        row, column = patch.south - self.view.south, patch.west - self.view.west
-        mask[row : row + patch.mask.shape[0], column : column + patch.mask.shape[1]] = patch.mask
-        return mask
-
-    def mask_within(self, patch: Patch) -> Bools:
         """Return the (rows, columns) mask, on the view's arrays, of the part of a patch that lies on them."""
-        # Empty when the patch, which is of the map frame, lies beyond them.
         mask: Bools = np.zeros(self.labels.shape, np.bool_)
         height, width = mask.shape
         row, column = patch.south - self.view.south, patch.west - self.view.west

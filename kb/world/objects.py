@@ -30,16 +30,15 @@ from utak.kb.perception.protrusions import (
     separate_things,
     with_embedded_things,
 )
-from utak.kb.perception.regions import Percept, Region, label_of
+from utak.kb.perception.regions import Percept, Region, label_of, region_of
 from utak.kb.perception.seams import cornered_parts, part_by_colour
 from utak.kb.world.facts import colour_facts
 from utak.kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
 LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned
-PLAY_PROBABILITY = (
-    0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
-)
+# Likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
+PLAY_PROBABILITY = 0.05
 MIN_FELT_SHARE = 2 / 3  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
 MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
@@ -68,7 +67,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
-        separated.append(_separated_region(thing, label, view))
+        separated.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
         kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE}
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
@@ -113,14 +112,6 @@ def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
     axis = int(np.ptp(np.flatnonzero(part.any(0))) > np.ptp(np.flatnonzero(part.any(1))))
     whole, known = (int(np.ptp(np.flatnonzero(mask.any(1 - axis)))) + 1 for mask in (part, touched))
     return known >= MIN_FELT_SHARE * whole
-
-
-def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
-    """Return the region `part<label>` of a thing that stands against the verge."""
-    rows, columns = np.nonzero(thing)
-    settled = int(100 * (view.state[thing] == OCCUPIED).sum() // len(rows))
-    extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
-    return Region(f"part{label}", True, settled, False, extent, round(10 * float(view.probability[thing].sum())))
 
 
 def seen_objects(
@@ -190,9 +181,6 @@ def _seen_node(
     touches: Touches,
 ) -> Node:
     """Return the node of a region of the map."""
-    # None when no shape fits), the belief in percent that it is an object, its shape classes and colour, the
-    # impressions that settled its squares, and by how much its sides may lie further in, as of an object that never
-    # moved.
     open_, doubtful = count_open_squares(window.mask, window.view)
     return Node(
         name=name,

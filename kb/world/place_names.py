@@ -3,7 +3,7 @@
 Rules of users, questions and plans that name d2 mean the same door in the whole run.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +11,8 @@ from shapely import LineString
 
 from utak.geometry.kernels.arrays import Longs
 from utak.kb.world.model import WorldModel
-from utak.kb.world.rooms import NO_ROOM, Rooms
+from utak.kb.world.rooms import NO_ROOM, SAME_DOOR, Door, Rooms
 
-SAME_DOOR = 1.5  # squares between the middle of a door's neck, as it was or is believed now, and the other neck
 WAKING_ROOM = 1  # the number of the room in which the robot woke, as kb/asp/belief.lp says
 MIN_SHARE = 0.25  # of a room's squares that are in another one, for it to be the same room; a convention
 CODE_BASE = 1 << 20  # more than the squares of any table's side: a square's (east, north) as one number
@@ -36,17 +35,21 @@ class PlaceNames:
         for number in sorted({side for door in rooms.doors for side in door.sides} - numbers.keys()):
             numbers[number] = max([*self._rooms, *numbers.values()]) + 1
         self._rooms |= {numbers[number]: squares for number, squares in found.items()}
-        necks = [LineString([model.place_to_utak(*door.a), model.place_to_utak(*door.b)]) for door in rooms.doors]
-        known = self._same_doors(necks)
-        for index, neck in enumerate(necks):
-            self._doors[known.setdefault(index, max(self._doors, default=0) + 1)] = neck
         doors = tuple(
-            replace(door, name=f"d{known[index]}", sides=(numbers[door.sides[0]], numbers[door.sides[1]]))
-            for index, door in enumerate(rooms.doors)
+            replace(door, sides=(numbers[door.sides[0]], numbers[door.sides[1]]))
+            for door in self.doors_named(rooms.doors, model)
         )
         table = np.zeros(max(numbers) + 1, np.int32)
         table[list(numbers)] = list(numbers.values())
         return replace(rooms, doors=doors, labels=table[rooms.labels])
+
+    def doors_named(self, doors: Sequence[Door], model: WorldModel, others: Sequence[Door] = ()) -> tuple[Door, ...]:
+        """Return doors under the names that they have for good, none that of others; remember where they are."""
+        necks = [LineString([model.place_to_utak(*door.a), model.place_to_utak(*door.b)]) for door in doors]
+        known = self._same_doors(necks, {door.name for door in others})
+        for index, neck in enumerate(necks):
+            self._doors[known.setdefault(index, max(self._doors, default=0) + 1)] = neck
+        return tuple(replace(door, name=f"d{known[index]}") for index, door in enumerate(doors))
 
     def _same_rooms(self, found: Mapping[int, Longs], same: dict[int, int]) -> dict[int, int]:
         """Return the numbers that rooms had before, by their present ones; each at most once."""
@@ -60,14 +63,15 @@ class PlaceNames:
                 same[number] = known
         return same
 
-    def _same_doors(self, necks: Sequence[LineString]) -> dict[int, int]:
+    def _same_doors(self, necks: Sequence[LineString], taken: Container[str]) -> dict[int, int]:
         """Return the numbers that doors at some places had before, by the index of the neck; each at most once."""
         # What was seen of its walls since may have made a neck narrower or wider.
         away = [
             (neck.centroid.distance(known.centroid), number, index)
             for index, neck in enumerate(necks)
             for number, known in self._doors.items()
-            if min(neck.distance(known.centroid), known.distance(neck.centroid)) <= SAME_DOOR
+            if f"d{number}" not in taken
+            and min(neck.distance(known.centroid), known.distance(neck.centroid)) <= SAME_DOOR
         ]
         same: dict[int, int] = {}
         for _, number, index in sorted(away):

@@ -23,15 +23,14 @@ from utak.kb.reasoning.solver import solve
 from utak.kb.world.doors import DoorwayNeck, find_necks
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 
-MIN_DOOR_CONFIDENCE = (
-    60  # percent: confidence from which a neck counts as a door; tuned on random worlds (benchmarks.campaign)
-)
-MIN_TRIED_DOOR_CONFIDENCE = (
-    25  # percent: confidence from which a neck that may be a door is tried; tuned on random worlds
-)
+# Percent: confidence from which a neck counts as a door; tuned on random worlds (benchmarks.campaign)
+MIN_DOOR_CONFIDENCE = 60
+# Percent: confidence from which a neck that may be a door is tried; tuned on random worlds
+MIN_TRIED_DOOR_CONFIDENCE = 25
 DOORWAY_REACH = 1.6  # squares: how far beyond a mouth the doorway may reach, and a room is not sure to begin; tuned
 MAX_MOUTH_DISTANCE = 1.5  # squares from a mouth within which the room behind it begins, where that is seen; tuned
 MIN_BOUND_PROBABILITY = 0.5  # verge occupied with at least this probability bounds doors: more likely than not
+SAME_DOOR = 1.5  # squares between the middle of a door's neck, as it was or is believed now, and the other neck
 NO_ROOM = 0  # the label of floor that is part of no room
 
 
@@ -59,8 +58,13 @@ class Door:
 
     @property
     def width(self) -> float:
-        """The width of its neck from wall to wall, in squares."""
+        """The width of its neck from wall to wall, in squares: the least that there may be."""
         return math.dist(self.a, self.b)
+
+    @property
+    def width_bound(self) -> float:
+        """An upper bound on the width of its neck, in squares: walls may end anywhere in their squares."""
+        return self.width + 2 * sum(abs(a - b) for a, b in zip(self.a, self.b, strict=True)) / max(self.width, 1e-9)
 
     @property
     def place(self) -> XY:
@@ -111,6 +115,26 @@ class Rooms:
         """Return the doors of a room, in the order of `doors`; [] when it has none."""
         return [door for door in self.doors if door.confidence >= least and room in door.sides]
 
+    def far_side(self, place: XY, room: int) -> list[int]:
+        """Return the rooms on the other side of the door at a place than a room; [] where no door is there."""
+        door = min(self.doors, key=lambda door: math.dist(door.place, place), default=None)
+        if door is None or math.dist(door.place, place) > SAME_DOOR:
+            return []
+        near: set[int] = set() if room in door.sides else {room}
+        while (
+            more := {side for other in self.doors if other != door and near & {*other.sides} for side in other.sides}
+            - near
+        ):
+            near |= more
+        return sorted(set(door.sides) - (near or {room}))
+
+    def most_of(self, squares: Bools, other_than: int = NO_ROOM) -> list[int]:
+        """Return the room that holds most of some squares; [] for none, or where it is the one that it may not be."""
+        counts = np.bincount(self.labels[squares], minlength=2)
+        counts[NO_ROOM] = 0
+        most = int(counts.argmax())
+        return [] if not counts.any() or most == other_than else [most]
+
     def beyond(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> Bools:
         """Return the squares of all rooms that share a door with a room, doorways left out."""
         others = {side for door in self.leading(room, least) for side in door.sides} - {room}
@@ -151,9 +175,6 @@ def _judge_necks(
     necks: list[DoorwayNeck], model: WorldModel, rules: tuple[Path, ...]
 ) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
     """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door."""
-    # The first is a list of (neck, percent) in the order of `necks`; the second holds the ends of that neck, the width
-    # of the floor on its narrower side in squares, and a point beyond it on both sides, view frame; it is None when
-    # every neck is a door.
     known = [neck for neck in necks if neck.certainty > 0]
     facts = []
     for number, (passage, _, certainty) in enumerate(known):
@@ -227,7 +248,6 @@ def _distances_to_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
 
 def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
     """Return the squares in front of both mouths of a passage, up to DOORWAY_REACH squares away."""
-    # (rows, columns) bool.
     mask = np.zeros(shape, np.bool_)
     for mouth, outward in zip(passage.mouths, (-1, 1), strict=True):
         middle, along = np.add(*mouth) / 2, np.subtract(mouth[1], mouth[0])

@@ -7,23 +7,13 @@ from typing import Any, NamedTuple
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
-from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import PLAN_PREDICATES, check_facts
+from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_STEPS, check_facts
 
 PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 STUCK_WORDS = {  # what the robot may be stuck with beside goals, in words; goals keep their names
     "robot": "the robot's own goals",
     "all": "all goals for objects together",
     "plan": "what users' rules leave of the plan",
-}
-SETTLING_WORDS = {  # steps that settle something, in words; {} is what they settle
-    "find": "what {} is about is looked for",
-    "pursue": "the robot sees how {} can hold",
-    "pull": "a thing that may go on in a wall is drawn out of it, for {}",
-    "make_way": "what blocks the robot's way is moved aside, for {}",
-    "try": "things that may be several are felt all round, and pushed each way where they did not move, for {}",
-    "feel": "walls are felt that may be things, for {}",
-    "bare": "what stands before walls that were never felt is moved away, for {}",
 }
 CERTAINTY_WORDS = {
     "verified": "geometry found a way over squares that are each free with 94 percent or more",
@@ -74,15 +64,15 @@ class PlanStep(NamedTuple):
     @property
     def settles(self) -> bool:
         """Whether it settles something that is open, and brings nothing anywhere."""
-        return self.step.partition("(")[0] in SETTLING_WORDS
+        return self.step.partition("(")[0] in SETTLING_STEPS
 
     @property
     def words(self) -> str:
         """The step in words."""
         name, _, rest = self.step.partition("(")
         subject, _, place = rest.removesuffix(")").partition(",")
-        if name in SETTLING_WORDS:
-            return SETTLING_WORDS[name].format(STUCK_WORDS.get(subject, subject))
+        if name in SETTLING_STEPS:
+            return SETTLING_STEPS[name].format(STUCK_WORDS.get(subject, subject))
         goals = f"to where {' and '.join(self.serves)} holds" if self.serves else f"to {place or subject}"
         if name == "arrive":
             return f"the robot goes {goals}"
@@ -197,13 +187,8 @@ def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
         raise BadInputError(problems)
     said: dict[str, list[tuple[str, ...]]] = {}
     for fact in found:
-        said.setdefault(fact.name, []).append(_arguments(fact))
+        said.setdefault(fact.name, []).append(tuple(map(str, fact.args)))
     return _plan(said) if said.keys() & {"plan", "price", "unmet"} else None
-
-
-def _arguments(fact: Fact) -> tuple[str, ...]:
-    """Return the arguments of a fact as text."""
-    return tuple(map(str, fact.args))
 
 
 def _plan(said: Mapping[str, list[tuple[str, ...]]]) -> StatedPlan:

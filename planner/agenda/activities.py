@@ -3,12 +3,13 @@
 The activities have the names of planner/asp/agenda.lp, which chooses among them.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from utak.kb.body import Grasp, Release
+from utak.kb.body import Grasp, Push, Release, Turn
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.vocabulary import RESUMED_STEPS, SETTLING_STEPS
 from utak.kb.task.task import Task
 from utak.planner.agenda.choice import Activity, Agenda, StageEnd
 from utak.planner.agenda.own_goals import OwnGoals
@@ -18,7 +19,7 @@ from utak.planner.deciding.clearing import ObstacleClearer
 from utak.planner.deciding.errands import ErrandRunner
 from utak.planner.deciding.feeling import feeling_scope
 from utak.planner.deciding.keeping import ConstraintKeeper
-from utak.planner.deciding.stage_turn import CONSTRAINTS, StageTurn
+from utak.planner.deciding.stage_turn import ALL_OBJECTS, CONSTRAINTS, StageTurn
 from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.trials import Trials
 from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
@@ -27,7 +28,7 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.per_model import PerModel
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
-from utak.planner.tasking.rule_effects import rules_that_close
+from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
 
 
 class Activities:
@@ -36,7 +37,26 @@ class Activities:
     def __init__(self, task: Task, pull: bool) -> None:
         """Make activities of which none was begun."""
         where = PerModel(destination)
-        self._transporter, self._clearer, self._trials = Transporter(), ObstacleClearer(), Trials()
+        self._transporter, self._clearer, trials = Transporter(), ObstacleClearer(), Trials()
+        clearer = self._clearer
+        # By the name of a step that settles something: its next command, or what it came to.
+        self._settling: Mapping[str, Callable[[Sequence[Fact], StageTurn], Decision]] = {
+            "find": lambda goals, turn: self._transporter.towards(goals[0], turn),
+            "pursue": lambda goals, turn: self._transporter.towards(goals[0], turn),
+            "pull": clearer.pull,
+            "make_way": clearer.clear,
+            "try": trials.next,
+            "feel": clearer.feel,
+            "bare": clearer.bare,
+        }
+        # By the name of a step that is resumed in later decisions: whether it was begun, and its next command then.
+        self._resumed: Mapping[str, tuple[Callable[[Situation], bool], Callable[[StageTurn], Decision]]] = {
+            "feel": (clearer.is_feeling, clearer.feel_on),
+            "make_way": (clearer.is_moving, clearer.clear_on),
+            "try": (trials.is_pushing, trials.go_on),
+        }
+        if (set(self._settling), set(self._resumed)) != (set(SETTLING_STEPS), set(RESUMED_STEPS)):
+            raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
 
@@ -55,7 +75,6 @@ class Activities:
 
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
-        # Done when it is attained.
         self._own.note(turn)
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
@@ -80,8 +99,7 @@ class Activities:
         model = turn.situation.model
         yield from (f"stage_goal({name},{number})" for number, name in enumerate(turn.goals, 1))
         yield from _unknown(turn)
-        begun = (*self._clearer.begun(turn.situation), *self._trials.begun(turn.situation))
-        yield from (f"begun({activity})" for activity in begun)
+        yield from (f"begun({name})" for name, (is_begun, _) in self._resumed.items() if is_begun(turn.situation))
         if not turn.stage.goals and self._doubt_of_done(turn.situation):
             yield "constraints_doubtful"
         given = {
@@ -97,36 +115,33 @@ class Activities:
 
     def _do(self, activity: Activity, turn: StageTurn, last: Decision) -> Decision:
         """Return what an activity comes to."""
-        stage, situation, clearer = turn.stage, turn.situation, self._clearer
+        stage, situation = turn.stage, turn.situation
         goals = turn.goals_of(activity.subject)
+        if activity.subject == ALL_OBJECTS:
+            turn = replace(turn, agreeing=True)
+        if activity.kind in self._settling:
+            return self._settling[activity.kind](goals, turn)
         doing: Mapping[str, Callable[[], Decision]] = {
             "release": lambda: _put_down(situation),
             "keep": lambda: self.keeper.broken_at_start(situation),
-            "resume": lambda: self._resume(activity.subject, turn),
+            "resume": lambda: self._resumed[activity.subject][1](turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(turn),
             "settle": self._nothing_settles,
-            "find": lambda: self._transporter.towards(goals[0], turn),
-            "pursue": lambda: self._transporter.towards(goals[0], turn),
             "go": lambda: self._own.go(turn, self.errands.intention),
             "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
-            "pull": lambda: clearer.pull(goals, turn),
-            "make_way": lambda: clearer.clear(goals, turn),
-            "try": lambda: self._trials.next(goals, turn),
-            "feel": lambda: clearer.feel(goals, turn),
-            "bare": lambda: clearer.bare(goals, turn),
-            "blame": lambda: _added(last, clearer.blame(turn.situation)),
-            "doubt": lambda: open_fact_against(
-                last, situation, ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(stage, situation)
-            ),
+            "blame": lambda: _added(last, self._clearer.blame(turn.situation)),
+            "doubt": lambda: self._doubt(activity.subject, last, turn),
         }
         return doing[activity.kind]()
 
-    def _resume(self, begun: str, turn: StageTurn) -> Decision:
-        """Return the next command of what was begun in an earlier decision: make_way, try or feel."""
-        clearer = self._clearer
-        return {"make_way": clearer.clear_on, "try": self._trials.go_on, "feel": clearer.feel_on}[begun](turn)
+    def _doubt(self, subject: str, last: Decision, turn: StageTurn) -> Decision:
+        """Return the open fact that would overturn a verdict; `limit` where rules close whatever door it may show."""
+        scope = ALL_WALLS if subject == CONSTRAINTS else feeling_scope(turn)
+        found = open_fact_against(last, turn.situation, scope)
+        vain = found.verdict == TaskVerdict.POSSIBLE_IF and rules_close_all_doors(turn.situation)
+        return replace(last, verdict=TaskVerdict.LIMIT) if vain else found
 
     def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
@@ -136,10 +151,16 @@ class Activities:
 
     def _allowed(self, decision: Decision, doing: Activity, turn: StageTurn) -> Decision:
         """Return a decision; `limit` in place of a grasp or a way to a goal while users' rules leave no plan so far."""
+        # What is in hand is not brought on then.
         goes = doing.kind == "go" and decision.command is not None and self.errands.intention.knows_where_to_go
-        if not (goes or isinstance(decision.command, Grasp)) or not self.errands.blamed_so_far(turn.situation):
+        if not (goes or isinstance(decision.command, Grasp | Push | Turn)):
             return decision
-        return Decision(None, f"{turn.stage} cannot be attained as far as is known", TaskVerdict.LIMIT)
+        blamed = self.errands.blamed_so_far(turn.situation)
+        if not blamed:
+            return decision
+        if isinstance(decision.command, Push | Turn):
+            return Decision(Release(), f"{turn.situation.model.held} is released, for {blamed}")
+        return Decision(None, f"{turn.stage} cannot be attained as far as is known; {blamed}", TaskVerdict.LIMIT)
 
     def _ended(self, end: StageEnd, last: Decision, turn: StageTurn) -> Decision:
         """Return the decision with which a stage ends: done, or a verdict with its reason."""
@@ -153,8 +174,11 @@ class Activities:
             why = f"what the task asks for holds, but {self._doubt_of_done(turn.situation)}"
         if self.errands.blamed not in why and not self.errands.is_shut_out:
             why = f"{why}; {self.errands.blamed}"
+        before = self.errands.intention.blamed_before
+        if before and not self.errands.blamed and end.verdict == TaskVerdict.LIMIT:
+            why = f"{why}; {_rules_at(before)} left no plan before"
         if closing := rules_that_close(turn.situation):
-            why = f"{why}; doors are closed by the rule{'s' * (len(closing) > 1)} at {' and '.join(closing)}"
+            why = f"{why}; doors are closed by {_rules_at(closing)}"
         return replace(last, why=why, verdict=end.verdict)
 
     def _doubt_of_done(self, situation: Situation) -> str:
@@ -175,6 +199,11 @@ def _unknown(turn: StageTurn) -> Iterator[str]:
             yield f"missing({name})"
         elif node.polygon is None:
             yield f"unclear({name})"
+
+
+def _rules_at(places: Sequence[str]) -> str:
+    """Return users' rules in words, by their places."""
+    return f"the rule{'s' * (len(places) > 1)} at {' and '.join(places)}"
 
 
 def _put_down(situation: Situation) -> Decision:

@@ -9,10 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from utak.geometry.kernels.arrays import XY
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
+from utak.kb.task.described import FirstPlaces
 from utak.kb.task.task import Task
 from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.corners import Corner, corners
@@ -47,8 +48,6 @@ class Decider:
         rules: tuple[Path, ...] = (),
         pull: bool = True,
         bound: Mapping[str, str] | None = None,
-        executor: PlanExecutor | None = None,
-        pursuer: Pursuer | None = None,
     ) -> None:
         """Make a decider that has decided nothing."""
         self.task, self.paths, self.rules = task, paths, rules
@@ -58,9 +57,10 @@ class Decider:
         self.rooms: Rooms = NO_ROOMS
         self.place_names = PlaceNames()
         self.corners: Mapping[str, Corner] = {}
-        self.pursuer = pursuer or Pursuer(paths)
-        self.executor = executor or PlanExecutor(pull)
+        self.pursuer = Pursuer(paths)
+        self.executor = PlanExecutor(pull)
         self._verifier = Verifier()
+        self._first_places = FirstPlaces()
         self._activities = Activities(task, pull)
         self._intention = self._activities.errands.intention
         self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
@@ -97,16 +97,28 @@ class Decider:
         kept_off = regions_kept_off(self.task, self.bound, model, ROBOT, lenient=self._lenient)
         cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
         self.rooms = self.place_names.named(rooms_of(model, self.rules), model)
-        reconciled = self._reconcile(cost_maps)
         self.corners = corners(model, self.rules)
+        reconciled = self._reconcile(cost_maps)
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
-        carried, as_well = self._activities.keeper.middles(model), as_well_by_parameter(reconciled)
-        situation = replace(situation, lenient=self._lenient, as_well=as_well, carried=carried)
+        keeper, as_well = self._activities.keeper, as_well_by_parameter(reconciled)
+        carried, renamed = keeper.middles(model), dict(keeper.renamed)
+        situation = replace(
+            situation,
+            lenient=self._lenient,
+            as_well=as_well,
+            carried=carried,
+            renamed=renamed,
+            near_misses=reconciled.near_misses,
+        )
         if any(goal.name == "not_through" for goal in self.task.goals) or rules_reach(TASK_ENCODING.stem, self.rules):
-            situation = replace(situation, possible_doors=possible_doors(model, self.rooms, self.rules))
+            possible = possible_doors(model, self.rooms, self.rules)
+            situation = replace(
+                situation, possible_doors=self.place_names.doors_named(possible, model, self.rooms.doors)
+            )
         ruled = rules_about_doors(situation)
-        situation = replace(situation, closed=ruled.closed, door_prices=ruled.prices).within_shut_doors()
+        situation = replace(situation, closed=ruled.closed, door_prices=ruled.prices, door_reliefs=ruled.reliefs)
+        situation = situation.within_shut_doors()
         for stage in self.stages[self.attained :]:
             decision = self._for_stage(self._turn(stage, situation, reconciled, track))
             meant = self._intention.meanings
@@ -224,9 +236,11 @@ class Decider:
         kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
         planned, before, given_up = self._intention.meanings, self.bound, self._given_up
         model, rules = cost_maps.model, self.rules
-        world = facts_for_rules("reconciliation", rules, model, Places(self.rooms, {}))
+        places = Places(self.rooms, self.corners)
+        world = facts_for_rules("reconciliation", rules, model, places)
+        first = self._first_places.facts(self.task, model, places, self._activities.keeper.renamed)
         reconciled = reconcile(
-            self.task, model, known, before, rules, carried, planned, kept, given_up, self._refused, world
+            self.task, model, known, before, rules, carried, planned, kept, given_up, self._refused, world, first
         )
         unmoved = {x for x, _ in reconciled.unmovable if is_moved_for_others_only(x, goals, self.task.parameters)}
         if unmoved:  # the other one of two things is moved

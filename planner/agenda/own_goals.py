@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+import shapely
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Release
+from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
 from utak.planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
@@ -19,7 +20,8 @@ from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
 from utak.planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
-from utak.planner.goals.joint import opposite_corners_reason
+from utak.planner.goals.joint import is_apart_from_start, too_far_reason
+from utak.planner.goals.placement import to_view_frame
 from utak.planner.goals.robot_goals import (
     Destination,
     jointly,
@@ -31,12 +33,13 @@ from utak.planner.navigation.encircle import encircled_point, encircling_routes,
 from utak.planner.screen.moves import next_move
 from utak.planner.sights.viewpoints import TO_REACH
 from utak.planner.skills.into_corner import IntoCorner, halt_beside_walls
-from utak.planner.stages import ORIGIN_GOALS, rests_on_waking
+from utak.planner.stages import ORIGIN_GOALS, is_at_start, rests_on_waking
 from utak.planner.subgoal_kind import SubgoalKind
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.setting import DestinationFunction
 
 LEAST_ROUND = 330.0  # degrees by which a track winds about a thing that it goes round (the meaning of the goal)
+START_REACH = 1.5  # squares in each axis from where the robot woke within which it is back there, at most (derived)
 NO_ROUND = 5.0  # degrees that do not matter for the sense of rotation (convention)
 
 
@@ -99,7 +102,6 @@ class OwnGoals:
 
     def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
         """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict."""
-        # Nothing for no doubt.
         situation, model = turn.situation, turn.situation.model
         contradiction = look_at_contradiction(situation)
         doubts = [] if contradiction is None else [contradiction]
@@ -110,9 +112,9 @@ class OwnGoals:
             covered = robot_square(model) if node is None else model.mask(node.patch)
             if doubts:
                 continue
-            doubts = check_elsewhere(goal.name, began, covered, situation)
+            doubts = check_elsewhere(goal, began, covered, situation)
             if node is not None and doubts:
-                there = situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE)
+                there = situation.goal_rooms(goal, began, situation.rooms, MIN_DOOR_CONFIDENCE)
                 pushed = next(filter(None, (push_to_see(node, doubt, there, turn) for doubt in doubts)), None)
                 if pushed is not None:
                     return pushed
@@ -140,14 +142,16 @@ class OwnGoals:
             halt = self._halt(where, turn)
             if halt is not None:
                 return halt
-        if opposite := opposite_corners_reason(goals, situation):
-            why = f"{stage} cannot be attained: {opposite}"
-            return impossible(why, opposite, unless=None)
+        woke = situation.model.frame.origin
+        about_start = shapely.Point(*woke).buffer(START_REACH, cap_style="square")
+        fixed = {str(goal): to_view_frame(about_start, situation) for goal in goals if is_at_start(goal)}
+        if far := too_far_reason(goals, situation, fixed=fixed):
+            return impossible(f"{stage} cannot be attained: {far}", far, unless=None)
         missing = "; ".join(d.missing for d in where if d.missing) or unreachable_reason(where)
         subgoals = subgoals_towards(where, situation, reconciled, TO_REACH)
         if situation.possible_doors:  # which doors there are tells which one must not be passed
             subgoals = [*subgoals, *contact_subgoals(situation)]
-        unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
+        unseen = any(str(term) in reconciled.hypothesised for goal in goals for term in goal.args[1:])
         proof = proof_if_not_found(situation.model) if unseen else (missing, NOTHING_LEFT)
 
         def ask() -> Decision:
@@ -163,6 +167,8 @@ class OwnGoals:
             return turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT) if proof else ())
 
         decision = turn.feel_before_verdict(ask)
+        if decision.verdict == TaskVerdict.IMPOSSIBLE and is_apart_from_start(goals, woke, situation):
+            return replace(decision, unless=None)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 
     def _halt(self, where: Sequence[Destination], turn: StageTurn) -> Decision | None:
@@ -186,7 +192,8 @@ class OwnGoals:
         assert node is not None
         is_home = (np.floor(track[0]) == np.floor(model.place)).all()
         winding = winding_number(track, node)
-        besides = self._round.besides(turn.track, node, back=any(map(_is_back_at_start, situation.task.goals)))
+        back = any(is_at_start(goal) and str(goal.args[0]) == ROBOT for goal in situation.task.goals)
+        besides = self._round.besides(turn.track, node, back)
         if is_home and abs(winding) == 1 and abs(besides + 360.0 * winding) >= LEAST_ROUND:
             return _attained(f"{stage} holds", turn)
         offered = encircling_routes(cost_maps, track, node)
@@ -201,11 +208,6 @@ class OwnGoals:
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         move = next_move(cost_maps, route.squares, route.level, kind, off_centre=False)
         return Decision(move, f"the way round {name}; {stage}")
-
-
-def _is_back_at_start(goal: Fact) -> bool:
-    """Return whether a goal is that the robot is where it woke."""
-    return goal.name == "at" and str(goal.args[0]) == ROBOT and str(goal.args[1]) == "start"
 
 
 def _turned(start: XY, end: XY, node: Node) -> float:
@@ -227,7 +229,7 @@ def _attained(why: str, turn: StageTurn) -> Decision:
 def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:
     """Return a look at the objects of some goals before these are believed to hold; None when all are settled."""
     verifier, situation = turn.verifier, turn.situation
-    nodes = [situation.object_of(str(goal.args[1])) for goal in goals]
+    nodes = [situation.object_of(str(term)) for goal in goals for term in goal.args[1:]]
     doubted = [n for n in nodes if n is not None and (verifier.is_unsettled(n) or (there and n.vague))]
     looks = (turn.look(verifier.next_look(node, situation)) for node in doubted)
     return next((look for look in looks if look is not None), None)

@@ -24,14 +24,14 @@ class Refutation:
     plans: tuple[tuple[int, CarryingPlan], ...]
     model: WorldModel  # what was believed
 
-    def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
-        passage = closest_refuted(self.plans).passage
-        return None if passage is None else passage.place
+    @property
+    def closest(self) -> CarryingPlan:
+        """The refuted plan that comes closest to leading somewhere, view frame."""
+        return closest_refuted(self.plans)
 
     def reason(self) -> str:
         """Return why the object cannot be carried there, in words: a clause without full stop."""
-        closest = closest_refuted(self.plans)
+        closest = self.closest
         passage = closest.passage
         if passage is None:
             return f"{self.name} cannot be carried there"
@@ -43,7 +43,7 @@ class Refutation:
     def unless(self) -> str:
         """Return the open fact by which the passage may be wide enough, in words; "" for none."""
         # Also "" when no passage is too narrow, or a wider one would not help.
-        closest = closest_refuted(self.plans)
+        closest = self.closest
         passage = closest.passage
         if passage is None or _is_blocked_elsewhere(closest):
             return ""
@@ -73,7 +73,8 @@ class Infeasibility:
 
     def neck(self) -> XY | None:
         """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
-        return None if self.refutation is None else self.refutation.neck()
+        passage = None if self.refutation is None else self.refutation.closest.passage
+        return None if passage is None else passage.place
 
     def unless(self) -> str:
         """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,11 +17,11 @@ import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, goal_key, moved
-from utak.geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
-from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, Leg, plan_carrying
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.geometry.raster.rasterize import squares, squares_after
 from utak.geometry.raster.runs import mask_to_polygon
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.perception.frame import ADJACENT_OFFSETS
@@ -100,6 +101,7 @@ class Request:
     contacts: int = 0
     held: bool = False  # whether the robot holds it and may go on with that grasp
     turn_cost: float = 1.0  # how many commands a turn counts for
+    on_lattice: bool = False  # whether only ways by whole squares and quarter turns are looked for
 
 
 class CarryingFloor(NamedTuple):
@@ -161,6 +163,22 @@ class ManipulationOracle:
         answer = certify(request.node, refuted, situation.model)
         return replace(answer, proved=False) if _may_use_other_ways(request.node, situation) else answer
 
+    def through(self, request: Request, opened: Bools, situation: Situation) -> ManipulationPlan | None:
+        """Return a plan by whole squares over sure floor, and some squares of wall that are supposed to be free."""
+        # None for no such plan. The robot itself keeps off these squares.
+        request = replace(request, on_lattice=True)
+        node, shape = request.node, to_view_frame(request.node.polygon, situation)
+        free = usable_squares(node, situation, 0, OtherObjects.CLEAR) | opened
+        floor = CarryingFloor(shape, situation.model.place_on_view, free, situation.cost_maps.free(0))
+        for name, _ in product(sorted(request.ends), range(MAX_ORACLE_ROUNDS)):
+            plan = self._ask_geometry(request, request.ends[name], floor, situation.model)
+            within = [leg.hold for leg in plan.legs if (robot_squares(leg, opened.shape) & opened).any()]
+            if plan.legs and not within:
+                found = _manipulation_plan(plan, shape, name, UNSEEN_LEVEL, situation, node)
+                return replace(found, swept=found.swept & ~opened, aside=(), hopes=True)
+            request = replace(request, avoid=(*request.avoid, *within))
+        return None
+
     def _bolder(
         self, request: Request, found: ManipulationPlan, situation: Situation, hoped: EndsFunction
     ) -> ManipulationPlan:
@@ -204,9 +222,10 @@ class ManipulationOracle:
     def _ask_geometry(self, request: Request, end: End, floor: CarryingFloor, model: WorldModel) -> CarryingPlan:
         """Return what geometry says of one end; from memory where the same was asked before."""
         shape, utak, free, walk = floor
-        held, turn, contacts = request.held, request.turn_cost, request.contacts
+        held, turn, contacts, on_lattice = request.held, request.turn_cost, request.contacts, request.on_lattice
         avoid = request.avoid if held else (*request.avoid, *sorted(_ambiguous_grasps(request.node, model)))
-        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), goal_key(end), utak, avoid, contacts, held, turn)
+        asked = shape.wkb, free.tobytes(), free.shape, walk.tobytes(), goal_key(end)
+        key = (*asked, utak, avoid, contacts, held, turn, on_lattice)
         if key not in self._answers:
             if len(self._answers) >= MAX_REMEMBERED:
                 del self._answers[next(iter(self._answers))]  # the oldest
@@ -216,7 +235,7 @@ class ManipulationOracle:
                 """Return what geometry says for some free squares and walls."""
                 # None for all that is not free.
                 return plan_carrying(
-                    shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
+                    shape, free, utak, end, margin, self._pull, avoid, walk, walls, held, turn, on_lattice
                 )
 
             roomy = ask(*_with_clearance(free, shape)) if contacts >= CONTACTS_FOR_CLEARANCE else None
@@ -317,16 +336,26 @@ def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Bool
     rows, columns = size
     mask: Bools = squares(shape, columns, rows)
     for leg in plan.legs:
-        x, y = leg.place
         for motion in leg.motions:
-            length = TURN_ARM * abs(motion.degrees) if isinstance(motion, Rotate) else math.hypot(motion.dx, motion.dy)
-            steps = max(1, math.ceil(length / SWEEP_STRIDE))
-            shares = [step / steps for step in range(1, steps + 1)]
-            mask |= squares_after(shape, [motion.part(share) for share in shares], columns, rows)
+            mask |= squares_after(shape, [motion.part(share) for share in _shares(motion)], columns, rows)
             shape = motion.carry(shape)
-            if isinstance(motion, Translate):
-                for share in shares:
-                    here = x + motion.dx * share, y + motion.dy * share
-                    mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
-                x, y = x + motion.dx, y + motion.dy
+        mask |= robot_squares(leg, size)
     return mask
+
+
+def robot_squares(leg: Leg, size: tuple[int, ...]) -> Bools:
+    """Return the mask of squares to which the robot comes while it pushes on a leg, (rows, columns) bool."""
+    mask, (x, y) = np.zeros(size, np.bool_), leg.place
+    for push in (motion for motion in leg.motions if isinstance(motion, Translate)):
+        for share in _shares(push):
+            column, row = int(x + push.dx * share), int(y + push.dy * share)
+            mask[min(max(row, 0), size[0] - 1), min(max(column, 0), size[1] - 1)] = True
+        x, y = x + push.dx, y + push.dy
+    return mask
+
+
+def _shares(motion: Motion) -> list[float]:
+    """Return the shares of a motion at which its places are sampled, the whole motion last."""
+    length = TURN_ARM * abs(motion.degrees) if isinstance(motion, Rotate) else math.hypot(motion.dx, motion.dy)
+    steps = max(1, math.ceil(length / SWEEP_STRIDE))
+    return [step / steps for step in range(1, steps + 1)]

@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from utak.geometry.kernels.arrays import XY
+from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End
 from utak.geometry.manipulation.plan_carrying import Inside
 from utak.geometry.motion.se2 import Rotate, Translate
@@ -106,6 +106,16 @@ class PlanExecutor:
                 return advice
             self.failed.record(situation.model.object(found.name), situation.model)
             plan, self._plan = None, None
+
+    def try_through(self, node: Node, ends: Mapping[str, End], opened: Bools, situation: Situation) -> Act | Go | None:
+        """Return what to do to carry an object to one of several ends as if some squares of wall were free."""
+        # None where no plan leads there, or the object is not felt where it should be grasped.
+        request = self._request(node, ends, "", situation.model)
+        found = self._oracle.through(request, opened, situation)
+        if found is None or self._plans >= MAX_PLANS:
+            return None
+        self._plans += 1
+        return self._next_step(self._operations.begin_plan(found, node, situation.model), ends, situation)
 
     def infeasibility(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
         """Return why an object cannot be carried to any of several ends; None when a plan is found."""

@@ -82,7 +82,7 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
     if not plan.grasped and situation.cost_maps.nearest(square_index(plan.legs[0].place, model)) is None:
         return None
     free = _kept_squares(plan, node, situation)
-    if not free[model.mask_within(plan.needed)].all():
+    if not free[model.mask(plan.needed)].all():
         return None
     if shapely.symmetric_difference(node.polygon, plan.polygon).area < AREA_TOLERANCE:
         if ends is None or plan.target in ends:

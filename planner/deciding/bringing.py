@@ -38,7 +38,6 @@ def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str 
 
 def carry_on(node: Node, turn: StageTurn, supposed: Situation) -> Decision | None:
     """Return the next command of the plan under way for an object in hand."""
-    # None when there is none, or it would loop.
     act = turn.executor.continue_plan(node, supposed)
     if act is None or turn.closes_loop(act.command):
         return None

@@ -28,15 +28,18 @@ class ObstacleClearer:
         """Make a clearer that is moving nothing."""
         self._moving = ""
         self._supposed: Supposition | None = None  # how the object that is being moved is supposed to lie in a wall
-        self._stays: frozenset[str] = frozenset()
+        self._stays: frozenset[str] = frozenset()  # what the goals speak of that were asked about last
         self._passages = Passages()
         self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
-    def begun(self, situation: Situation) -> tuple[str, ...]:
-        """Return what was begun in an earlier decision and is gone on with: feel, make_way, both, or nothing."""
+    def is_moving(self, _situation: Situation) -> bool:
+        """Return whether an obstacle is being moved aside."""
+        return bool(self._moving)
+
+    def is_feeling(self, situation: Situation) -> bool:
+        """Return whether the robot is feeling walls, because nothing else was left to do."""
         self._feeling &= situation.model.held is None  # what is in hand was led out instead: goals are asked about anew
-        feeling = ("feel",) if self._feeling else ()
-        return (*feeling, "make_way") if self._moving else feeling
+        return self._feeling
 
     def clear_on(self, turn: StageTurn) -> Decision:
         """Return the next command for the obstacle that is being moved; nothing when it blocks no longer."""
@@ -65,8 +68,7 @@ class ObstacleClearer:
 
     def clear(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move aside what blocks the robot's way."""
-        # Nothing when no such object can be moved.
-        self._let_stay(goals, turn.situation)
+        self._stays = turn.situation.named_by(goals)
         ringed = is_ringed(turn.situation.model, turn.situation.cost_maps.floor)
         instead = self._passages.next(turn) if ringed else None
         instead = instead or self._move_first(self._movable(turn.situation), turn)
@@ -74,24 +76,23 @@ class ObstacleClearer:
 
     def pull(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move what may go on in a wall, as far as that was seen."""
-        # Nothing for no such thing.
-        self._let_stay(goals, turn.situation)
+        self._stays = turn.situation.named_by(goals)
         return self._pull(turn) or nothing_to_do("nothing that may go on in a wall can be moved")
 
     def feel(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to feel walls that may be things; nothing when none is left that can be reached."""
-        self._let_stay(goals, turn.situation)
+        self._stays = turn.situation.named_by(goals)
         felt = feel_walls(turn)
         self._feeling |= felt is not None
-        if felt is None and not feeling_scope(turn.stage, turn.situation).parting:
+        if felt is None and not feeling_scope(turn).parting:
             felt = self._passages.next(turn)
         return felt or nothing_to_do("nothing is left to feel")
 
     def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move away what stands before walls that were never felt; nothing for none."""
-        self._let_stay(goals, turn.situation)
+        self._stays = turn.situation.named_by(goals)
         self._stays -= {node.name for node in turn.situation.model.objects if node.moved}  # it was put there by chance
-        hidden = before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn.stage, turn.situation))
+        hidden = before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn))
         instead = self._move_first_of(hidden, turn)
         return instead or nothing_to_do("nothing that stands before walls can be moved away")
 
@@ -103,13 +104,9 @@ class ObstacleClearer:
             return nothing_to_do("no object blocks the robot's way")
         return Decision(None, f"{blocking} blocks the robot's way, and was not moved aside", TaskVerdict.LIMIT)
 
-    def _let_stay(self, goals: Sequence[Fact], situation: Situation) -> None:
-        """Remember that what some goals speak of stays where it is."""
-        self._stays = situation.named_by(goals)
-
     def _pull(self, turn: StageTurn) -> Decision | None:
         """Return the next command to move what may go on in a wall; None for no such thing."""
-        parting = feeling_scope(turn.stage, turn.situation).parting
+        parting = feeling_scope(turn).parting
         return self._move_first_of(hidden_in_walls(self._movable(turn.situation), turn.situation, parting), turn)
 
     def _movable(self, situation: Situation) -> list[Node]:
@@ -121,9 +118,8 @@ class ObstacleClearer:
 
     def _move_first(self, things: Sequence[Node], turn: StageTurn, name: str = "") -> Decision | None:
         """Return the next command to move aside the first object that blocks, and remember which it is."""
-        # None for none.
-        parting = feeling_scope(turn.stage, turn.situation).parting
-        found = obstacles(things, turn.situation, walls_to_feel(turn.stage, turn.situation), parting)
+        parting = feeling_scope(turn).parting
+        found = obstacles(things, turn.situation, walls_to_feel(turn), parting)
         return self._move_first_of((one for one in found if name in ("", one.node.name)), turn)
 
     def _move_first_of(self, found: Iterable[Obstacle], turn: StageTurn) -> Decision | None:

@@ -49,11 +49,10 @@ class ErrandRunner:
             self.intention.failed(found.errand, turn.situation, decision.why)
         turn.executor.unwanted = {}
         planned = self.intention.plan is not None
-        return nothing_to_do("the next step is the robot's own" if planned else "the task plan has no errand")
+        return nothing_to_do("the next step is the robot's own" if planned else "no verified task plan has an errand")
 
     def settle(self, turn: StageTurn, given: Sequence[str]) -> str:
         """Return the first step of the task plan where something is open, as planner/asp/task writes it."""
-        # "" for none.
         step, self.forbidden = self.intention.settle(turn.stage, turn.situation, given)
         return step
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
-from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
+from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
 from utak.kb.reasoning.solver import solve
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import Door
@@ -31,7 +31,7 @@ from utak.planner.sights.walls import (
     walls_in_question,
 )
 from utak.planner.situation import Situation, neck_squares
-from utak.planner.stages import DOOR_GOALS, Stage
+from utak.planner.stages import DOOR_GOALS, TOUCHING_GOALS, Stage
 from utak.planner.subgoal_kind import SubgoalKind
 
 MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time
@@ -39,8 +39,12 @@ PASSAGE_REASON = "floor is seen beyond the wall, so an opening that fills no who
 FEELING_REASON = "what seems to be wall may be a thing that can be moved, so it is felt"
 
 
-def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
+def feeling_scope(turn: StageTurn) -> FeelingScope:
     """Return which walls matter for a stage that cannot be attained otherwise."""
+    stage, situation = turn.stage, turn.situation
+    named = {str(term) for goal in stage.carried for term in goal.args}
+    if turn.agreeing and sum(map(situation.task.is_object, named)) == 1:
+        return FeelingScope(parting=False, things=False)  # where one thing shall be depends on the floor alone
     forbidden = situation.forbidden(ROBOT)
     track = any(goal.name in TRACK_GOALS for goal in stage.own)
     parting = bool(stage.carried) or track or bool(forbidden)
@@ -55,8 +59,8 @@ def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
 def _wanted(stage: Stage, situation: Situation) -> Bools | None:
     """Return the squares of an object at which the robot shall be, and to which no way leads; None for no such."""
     for goal in stage.own:
-        node = situation.object_of(str(goal.args[1])) if len(goal.args) > 1 else None
-        if node is not None and goal.name in ("at", "beside"):
+        node = situation.object_of(str(goal.args[1])) if goal.name in TOUCHING_GOALS else None
+        if node is not None:
             mask = situation.model.mask(node.patch)
             if not (dilate(mask, 1) & situation.cost_maps.floor).any():
                 return mask
@@ -73,9 +77,9 @@ def _floor_this_side(doors: Sequence[Door], situation: Situation) -> Bools:
     return mask
 
 
-def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
+def walls_to_feel(turn: StageTurn) -> Bools:
     """Return the walls that were never felt and may be things that could help a stage, reachable to be felt or not."""
-    walls = walls_in_question(situation.model, situation.cost_maps.floor, feeling_scope(stage, situation))
+    walls = walls_in_question(turn.situation.model, turn.situation.cost_maps.floor, feeling_scope(turn))
     mask: Bools = np.any(list(walls.values()), axis=0)
     return mask
 
@@ -83,9 +87,7 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
 def feel_walls(turn: StageTurn) -> Decision | None:
     """Return the next command to feel walls that may be things; None when none is left that can be reached."""
     cost_maps = turn.situation.cost_maps
-    return turn.look_if_reached(
-        choose_halt(feeling_places(cost_maps, feeling_scope(turn.stage, turn.situation)), cost_maps)
-    )
+    return turn.look_if_reached(choose_halt(feeling_places(cost_maps, feeling_scope(turn)), cost_maps))
 
 
 def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
@@ -149,7 +151,7 @@ class Passages:
                 self._tried.add(passage.line)
                 return Decision(move_to(passage.end, model), f"{PASSAGE_REASON}; {turn.stage}")
             go = Go(np.array([passage.square]), passage.start, PASSAGE_REASON)
-            walk = with_command(turn.pursuer.go(go, turn.stage, situation))
+            walk = with_command(turn.within(situation).go(go))
             if walk is not None:
                 return walk
         return None

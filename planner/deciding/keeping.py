@@ -15,8 +15,8 @@ import shapely
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.body import Command, Move, Push
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT
 from utak.kb.task.task import Task
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.constraints import SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
@@ -43,13 +43,19 @@ class ConstraintKeeper:
     """Remembers where things were, and tells whether the constraints on the way were kept."""
 
     task: Task  # whose constraints are meant
+    renamed: dict[str, str] = field(default_factory=dict)  # of things that were moved: the next name, by the one before
     _tracks: dict[str, ThingTrack] = field(default_factory=dict)
 
     def note(self, model: WorldModel) -> None:
-        """Remember where all things are believed to be now."""
-        for node in model.objects:
-            if node.polygon is not None:
-                self._tracks[node.name] = _continued(self._tracks.get(node.name), node, model)
+        """Remember where all things are believed to be now; what lies where a thing was that has gone is that thing."""
+        gone = sorted(name for name, track in self._tracks.items() if track.swept and model.object(name) is None)
+        for node in (one for one in model.objects if one.polygon is not None):
+            if node.name not in self._tracks:
+                outline = in_robot_frame(node.polygon, model.frame)
+                if before := next((name for name in gone if _lie_alike(self._tracks[name].outline, outline)), None):
+                    gone.remove(before)
+                    self.renamed[before], self._tracks[node.name] = node.name, self._tracks.pop(before)
+            self._tracks[node.name] = _continued(self._tracks.get(node.name), node, model)
 
     def middles(self, model: WorldModel) -> dict[str, tuple[XY, ...]]:
         """Return where the middle of each thing has been, by its name: points (x, y) in squares, map frame."""
@@ -126,13 +132,18 @@ def _continued(known: ThingTrack | None, node: Node, model: WorldModel) -> Thing
     outline = in_robot_frame(node.polygon, model.frame)
     robot = model.frame.place_to_utak(*model.place)
     middle = outline.centroid.x, outline.centroid.y
-    if known is None or not node.moved:
+    if known is None or not (node.moved or known.swept):
         return ThingTrack(outline, node.turned, robot, None, (middle,))
     if outline.equals_exact(known.outline, SAME_PLACE):
         return known
     step = swept_region(known.outline, outline, node.turned - known.turned, known.robot)
     swept = step if known.swept is None else shapely.union_all([known.swept, step])
     return ThingTrack(outline, node.turned, robot, swept, (*known.middles, middle))
+
+
+def _lie_alike(one: Any, other: Any) -> bool:
+    """Return whether two outlines share more than half of the smaller one."""
+    return bool(2 * one.intersection(other).area > min(one.area, other.area))
 
 
 def _doubt(model: WorldModel, region: Any) -> float:

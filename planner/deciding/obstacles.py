@@ -40,8 +40,6 @@ def obstacles(
     things: Sequence[Node], situation: Situation, walls: Bools | None = None, parting: bool = False
 ) -> Iterator[Obstacle]:
     """Yield those of some objects that block the way to floor, known or unseen, that is reached without them."""
-    # An Obstacle holds the object, and an end: where it shall lie so that the way is free.
-    # For an object that may go on in a wall it is the latter, for the object as it lies if it does.
     model = situation.model
     under = [model.mask(thing.patch) for thing in things]
     found = [
@@ -100,7 +98,6 @@ def before_walls(things: Sequence[Node], situation: Situation, walls: Bools) -> 
 
 def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
     """Return the first of some objects that a route over their squares comes to."""
-    # Raises StopIteration when the route crosses none of them.
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
 
@@ -110,7 +107,6 @@ def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool)
     # For each side on which that is so there are up to three Obstacles, the object as it lies then, with their ends:
     # off the route that opens; drawn out of the wall by one square more than it goes on, or as far as there is room, so
     # that all of it is seen; and pushed TRIAL_PUSH squares further in.
-    # An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
 
     def opens(under: Bools) -> bool:
         """Return whether a way opens when some squares are free, (rows, columns) bool on the arrays of the view."""

@@ -16,7 +16,7 @@ from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import one_move_squares
 from utak.planner.screen.projection import CostMaps, SquareIndices, dilate
 from utak.planner.sights import frontiers
-from utak.planner.sights.viewpoints import TO_TAKE, Approach, inspection, sightings
+from utak.planner.sights.viewpoints import MOST_LIKELY, TO_TAKE, Approach, inspection, sightings
 from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
 
@@ -108,7 +108,7 @@ def _doubtful_objects(
         look = inspection(cost_maps, node, chance, to) if node.open else frontiers.touch_viewpoint(cost_maps, node)
         what = f"{look.what}: it may be {x}"
         squares = np.flatnonzero(model.mask(node.patch))
-        percent = max(MIN_OBJECT_CHANCE, round(100 * chance))
+        percent = max(MIN_OBJECT_CHANCE, min(MOST_LIKELY, round(100 * chance)))
         found.append(Candidate(squares, Subgoal(SubgoalKind.INSPECT, look.squares, what, percent)))
     return [candidate for candidate in found if len(candidate.subgoal.squares)]
 

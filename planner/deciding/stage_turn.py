@@ -8,14 +8,16 @@ from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Command
 from utak.kb.language.terms import Fact
 from utak.kb.task.binding import Reconciliation
-from utak.planner.advice import Go
+from utak.planner.advice import Go, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
 from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
 from utak.planner.decision import Decision, with_command
 from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import halt_exactly_at
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
+from utak.planner.subgoal_kind import SubgoalKind
 
 ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/asp/agenda.lp calls them
 
@@ -32,6 +34,7 @@ class StageTurn:
     executor: PlanExecutor  # follows manipulation plans, and remembers the one under way
     pursuer: Pursuer  # walks after subgoals, and remembers the present route
     verifier: Verifier  # makes sure of what is believed, and remembers what was looked at for that
+    agreeing: bool = False  # whether it is only asked if the goals for objects can hold at once
 
     @cached_property
     def goals(self) -> Mapping[str, Fact]:
@@ -64,19 +67,24 @@ class StageTurn:
 
     def look(self, look: Subgoal | None) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
-        return self.pursuer.pursue_look(look, self.stage, self.situation)
+        return None if look is None else self.seek([look], lambda: look.what)
 
     def look_if_reached(self, look: Subgoal | None) -> Decision | None:
         """Return the next command towards a look; None for no look, or when no way leads there."""
         return with_command(self.look(look))
 
     def go(self, go: Go) -> Decision:
-        """Return the next command to where an object is grasped, or the verdict: see Pursuer.go."""
-        return self.pursuer.go(go, self.stage, self.situation)
+        """Return the next command to where an object is grasped, so that the last move halts there; or the verdict."""
+        walk = self.seek([Subgoal(SubgoalKind.ATTAIN, go.square, go.why)], lambda: "no way leads there")
+        return replace(walk, command=halt_exactly_at(walk.command, go.place, self.situation.model))
 
     def prepare(self, advice: Advice) -> Decision | None:
-        """Return the next command to where an object is grasped or seen; None for neither: see Pursuer.prepare."""
-        return self.pursuer.prepare(advice, self.stage, self.situation)
+        """Return the next command to where an object is grasped or squares are seen; None for other advice."""
+        if isinstance(advice, Go):
+            return with_command(self.go(advice))
+        if isinstance(advice, See):
+            return self.look_if_reached(Subgoal(SubgoalKind.INSPECT, *advice.viewpoint))
+        return None
 
     def feel_before_verdict(self, ask: Callable[[], Decision]) -> Decision:
         """Return what is decided; what may be an object is felt before a verdict: see Pursuer.feel_before_verdict."""

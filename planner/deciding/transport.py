@@ -12,9 +12,10 @@ import numpy as np
 import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools
-from utak.geometry.manipulation.goals import End, Inside
+from utak.geometry.manipulation.goals import At, End, Inside
 from utak.kb.body import Grasp, Move, Push, Release, Turn
 from utak.kb.language.terms import Fact
+from utak.kb.task.binding import rules_that_deny
 from utak.kb.world.model import Node
 from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.infeasibility import Infeasibility
@@ -25,7 +26,7 @@ from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.verification import look_before_grasp, look_for_more
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
 from utak.planner.goals.corner_goal import approach_for_goals, corner_may_move
-from utak.planner.goals.joint import conflicting_goals, opposite_corners_reason
+from utak.planner.goals.joint import conflicting_goals, is_apart_from_start, too_far_reason
 from utak.planner.goals.object_goals import goal_placement
 from utak.planner.goals.origins import Origins
 from utak.planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
@@ -36,9 +37,11 @@ from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.situation import Situation
 from utak.planner.skills.measure_size import SizeEstimator, least_outline
 from utak.planner.skills.press import Presser
-from utak.planner.stages import ORIGIN_GOALS, Stage
+from utak.planner.skills.try_passage import PassageTrials
+from utak.planner.stages import FIXED_GOALS, ORIGIN_GOALS, Stage, is_at_start
 from utak.planner.subgoal_kind import SubgoalKind
 
+SHARE_TARGET = "share"  # the ends of pushes that give each side of a passage its share of what is missing
 SIZE_TARGET = "size"  # the end of a push whose only purpose is to measure an object
 MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looked at first; tuned on random worlds
 
@@ -46,17 +49,13 @@ MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looke
 class Transporter:
     """Brings objects where goals hold, and remembers where they began and what the robot looked at for that."""
 
-    def __init__(
-        self,
-        place: Callable[[Fact, Node, XY, Situation], Placement] = goal_placement,
-        search: Callable[..., Sequence[Subgoal]] = subgoals_towards,
-    ) -> None:
+    def __init__(self) -> None:
         """Make a transporter that remembers nothing."""
-        self._place: Callable[[Fact, Node, XY, Situation], Placement] = PerModel(place)
-        self._search = search
+        self.place: Callable[[Fact, Node, XY, Situation], Placement] = PerModel(goal_placement)
+        self.search: Callable[..., Sequence[Subgoal]] = subgoals_towards
         self._origins = Origins()
         self._size_estimator = SizeEstimator()
-        self._presser = Presser()
+        self._presser, self._passages = Presser(), PassageTrials()
         # How many squares had been looked from when the robot went to see where an object must end, until one is added.
         self._looked_before = 0
         self._has_taken_along = False  # whether an object that shut the robot in was taken along to look
@@ -64,11 +63,6 @@ class Transporter:
     def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
         """Return where the object that a parameter means lay at first: the middle (x, y), in squares, map frame."""
         return self._origins.at(parameter, node, situation)
-
-    @property
-    def place(self) -> Callable[[Fact, Node, XY, Situation], Placement]:
-        """The function that tells where a goal holds for an object."""
-        return self._place
 
     def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
@@ -95,7 +89,7 @@ class Transporter:
         """Return the next command to carry the object of a goal, or the verdict; done when the goal holds."""
         x = str(goal.args[0])
         assert node.polygon is not None
-        land = self._place(goal, node, self.origin_of(x, node, turn.situation), turn.situation)
+        land = self.place(goal, node, self.origin_of(x, node, turn.situation), turn.situation)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
         lost = self._origins.lost(x, node, turn.situation)
@@ -127,32 +121,37 @@ class Transporter:
             along = None if turn.situation.minds_doors(node.name) else partial(_take_along, node, turn)
             subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
             return turn.seek([subgoal], along=along)
+        # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
+        if self._passages.begun(node, turn.situation.model):
+            trial = self._try_passage(advice, node, land.must_reach.ends() or land.ends, turn)
+            if trial is not None:
+                return trial
         unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
-        subgoals = self._search([unknown], turn.situation, turn.reconciled)
+        subgoals = self.search([unknown], turn.situation, turn.reconciled)
         decision = self._look_for_way(advice, node, land, subgoals, turn)
         return self._check_proof(advice, decision, node, land, turn)
 
     def conflict(self, stage: Stage, situation: Situation) -> Decision:
         """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once."""
-        # Else nothing.
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
             node = situation.object_of(x)
             if len(goals) < 2 or node is None or node.polygon is None:
                 continue
-            length = 2 * float(shapely.minimum_bounding_radius(node.polygon))
-            if opposite := opposite_corners_reason(goals, situation, length):
-                return impossible(f"{stage} cannot be attained: {opposite}", opposite, unless=None)
+            shape, began = to_view_frame(node.polygon, situation), self.origin_of(x, node, situation)
+            lands = {str(goal): self.place(goal, node, began, situation) for goal in goals}
+            regions = {str(goal): end.polygon for goal in goals for end in _where_task_says(goal, lands[str(goal)])}
+            length = 2 * float(shapely.minimum_bounding_radius(shape))
+            if far := too_far_reason(goals, situation, length, regions):
+                return impossible(f"{stage} cannot be attained: {far}", far, unless=None)
             if any(corner_may_move(goal, situation) for goal in goals):
                 continue
-            began = self.origin_of(x, node, situation)
-            lands = [self._place(goal, node, began, situation) for goal in goals]
-            found = conflicting_goals(lands, to_view_frame(node.polygon, situation))
+            found = conflicting_goals(list(lands.values()), shape)
             if found is not None:
                 one, other = (goals[number] for number in found)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
-                poses = one.name == other.name == "pose"  # which lie where the task says, whatever else is known
-                return impossible(why, f"no place lies in both {one} and {other}", unless=None if poses else "")
+                said = {str(one), str(other)} <= regions.keys() or is_apart_from_start((one, other), began, situation)
+                return impossible(why, f"no place lies in both {one} and {other}", unless=None if said else "")
         return nothing_to_do("no two goals are known to contradict each other")
 
     def _freed(self, decision: Decision, goal: Fact, turn: StageTurn) -> Decision:
@@ -170,9 +169,15 @@ class Transporter:
         immovable = dict(turn.reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else turn.situation.nothing_is(x))
         goals = [goal for goal in turn.stage.goals if str(goal.args[0]) == x]
-        subgoals = self._search([unseen], turn.situation, turn.reconciled, approach_for_goals(goals, turn.situation))
+        subgoals = self.search([unseen], turn.situation, turn.reconciled, approach_for_goals(goals, turn.situation))
         proof = proof_if_not_found(turn.situation.model, bool(immovable))
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, lambda: unseen.missing, proof))
+
+        def missing() -> str:
+            """Return in words what is missing, with users' rules because of which nothing is meant."""
+            denying = "" if immovable else rules_that_deny(x, turn.reconciled, turn.situation.rules)
+            return unseen.missing + (f", by the rule at {denying}" if denying else "")
+
+        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, missing, proof))
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
@@ -241,7 +246,25 @@ class Transporter:
             return turn.seek([recheck], refused.reason, refused.proof())
         ends = must_reach or land.ends
         instead = self._measure_refused(node, ends, turn) if ends else None
+        instead = instead or self._try_passage(refused, node, ends, turn)
         return instead or replace(decision, unless=refused.unless(), near=refused.neck())
+
+    def _try_passage(
+        self, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn
+    ) -> Decision | None:
+        """Return the next command of a trial of a passage that may be wide enough; None where there is none."""
+        if refused.refutation is None or not refused.unless() or not ends:
+            return None
+        closest, why = refused.refutation.closest, f"the passage for {node.name} may be wider than it seems"
+        assert closest.passage is not None
+        while trial := self._passages.next(node, closest.passage, closest.missing, turn.situation.model):
+            if trial.aside:
+                poses = {f"{SHARE_TARGET}{n}": At(pose) for n, pose in enumerate(trial.aside)}
+                return _begun(turn.executor.advise(node, poses, turn.situation), why, turn)
+            through = turn.executor.try_through(node, ends, trial.opened, turn.situation)
+            if through is not None and (begun := _begun(through, why, turn)):
+                return begun
+        return None
 
     def _advice(self, node: Node, land: Placement, turn: StageTurn) -> Advice:
         """Return what to do to carry an object to where its goal holds; while that is not known, to near it."""
@@ -283,7 +306,6 @@ class Transporter:
 
     def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in."""
-        # None when it does not, or cannot.
         if not shut_in and robot_can_leave(node, turn.situation):
             return None
         out = turn.executor.lead_out(node, turn.situation)
@@ -307,13 +329,23 @@ class Transporter:
     def _measure(self, node: Node, turn: StageTurn) -> Decision | None:
         """Return the next command to push an object by a part of a square, to measure it; None when that is done."""
         for pose in self._size_estimator.poses(node):
-            advice = turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation)
-            if isinstance(advice, Act):
-                return Decision(advice.command, f"the size of {node.name} is not sure, so it is measured; {turn.stage}")
-            walk = turn.prepare(advice)
-            if walk is not None:
-                return walk
+            why = f"the size of {node.name} is not sure, so it is measured"
+            if begun := _begun(turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation), why, turn):
+                return begun
         return None
+
+
+def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision | None:
+    """Return the next command of some advice, for a push with a reason of its own; None where there is none."""
+    if isinstance(advice, Act):
+        return Decision(advice.command, f"{why}; {turn.stage}")
+    return turn.prepare(advice)
+
+
+def _where_task_says(goal: Fact, land: Placement) -> list[Inside]:
+    """Return the region in which an object lies where a goal holds, if the task says where, whatever is found."""
+    said = goal.name in FIXED_GOALS or is_at_start(goal)
+    return [end for end in land.must_reach.ends().values() if isinstance(end, Inside)] if said else []
 
 
 def _look_at(node: Node, turn: StageTurn) -> Decision | None:

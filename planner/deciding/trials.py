@@ -29,9 +29,9 @@ class Trials:
         self._begun: Trial | None = None
         self._made: set[Trial] = set()  # trials in which the thing was pushed
 
-    def begun(self, situation: Situation) -> tuple[str, ...]:
-        """Return ("try",) while a thing that is to be moved is in hand, as planner/asp/agenda.lp calls it; else ()."""
-        return ("try",) if self._begun is not None and situation.model.held == self._begun[0] else ()
+    def is_pushing(self, situation: Situation) -> bool:
+        """Return whether a thing is in hand that is to be moved, to see whether it moves another way."""
+        return self._begun is not None and situation.model.held == self._begun[0]
 
     def go_on(self, turn: StageTurn) -> Decision:
         """Return the next command for the thing in hand that is moved by a square; nothing when that is done."""
@@ -47,7 +47,7 @@ class Trials:
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to find out whether what seems one thing is several; nothing when nothing is left."""
         situation = turn.situation
-        scope = feeling_scope(turn.stage, situation)
+        scope = feeling_scope(turn)
         felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)
         if felt is not None:
             return felt

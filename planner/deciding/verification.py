@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools
+from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node, WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from utak.planner.carrying.infeasibility import Infeasibility
@@ -68,7 +69,6 @@ class Verifier:
 
 def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal | None:
     """Return a look that tells the orientation of the frame, before an object is grasped."""
-    # None when it is not needed.
     model = situation.model
     if not (
         orientation_is_uncertain(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck
@@ -103,7 +103,7 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
 
 
-def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
+def check_elsewhere(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
     """Return what to see or feel before something is said to be elsewhere than it began; [] when that is sure."""
     unseen = unseen_beyond_door(goal, began, covered, situation)
     if unseen is not None:
@@ -111,14 +111,14 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
     return [Subgoal(SubgoalKind.INSPECT, *felt) for felt in unfelt_bounds(goal, began, covered, situation)]
 
 
-def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
+def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure."""
     model, view = situation.model, situation.model.view
-    if goal == "around":
+    if goal.name == "around":
         return None
     closed = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
     rooms = rooms_of(replace(model, view=closed), situation.rules, model.verge | ~view.seen)
-    if (situation.next_to(began, rooms, MIN_DOOR_CONFIDENCE) & covered).any():
+    if (situation.goal_rooms(goal, began, rooms, MIN_DOOR_CONFIDENCE) & covered).any():
         return None
     rows, columns = np.nonzero(covered)
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools
+from utak.kb.language.terms import Fact
 from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from utak.planner.goals.robot_goals import hidden_from
@@ -24,7 +25,7 @@ from utak.planner.situation import Situation
 class BoundsByTheWay:
     """Deferred viewpoints: where it is felt, on the way, whether a goal holds."""
 
-    goal: str  # as for `unfelt_bounds`
+    goal: Fact  # as for `unfelt_bounds`
     began: XY
     covered: Bools  # the squares where the thing may end
     situation: Situation
@@ -34,7 +35,7 @@ class BoundsByTheWay:
         return tuple(unfelt_bounds(self.goal, self.began, self.covered, self.situation))
 
 
-def unfelt_bounds(goal: str, began: XY, covered: Bools, situation: Situation) -> list[Viewpoint]:
+def unfelt_bounds(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Viewpoint]:
     """Return where to feel each piece of the bounds on which a goal rests, or to see it better."""
     # [] when it is settled.
     # If such a piece were a thing, alone or together with all others that may be one, the goal would not hold.
@@ -77,16 +78,16 @@ def _felt_from(mask: Bools, situation: Situation) -> Viewpoint:
     return viewpoint_of(cost_maps, mask, WHAT_IS_FELT)
 
 
-def _failure(goal: str, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
+def _failure(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
     """Return a function that tells whether a goal fails if the squares of a mask are no verge."""
     model = situation.model
-    if goal == "around":
+    if goal.name == "around":
         hidden = covered & hidden_from(model.verge, model, began)
         return lambda mask: bool((hidden & ~hidden_from(model.verge & ~mask, model, began)).any())
 
     def is_in_no_next_room(mask: Bools) -> bool:
         """Return whether none of the covered squares is in a next room without the verge of a mask."""
         rooms = rooms_of(model, situation.rules, model.verge & ~mask)
-        return not (situation.next_to(began, rooms, MIN_DOOR_CONFIDENCE) & covered).any()
+        return not (situation.goal_rooms(goal, began, rooms, MIN_DOOR_CONFIDENCE) & covered).any()
 
     return is_in_no_next_room

@@ -1,45 +1,95 @@
 """Goals that cannot hold at once, by the regions in which an object lies when each of them holds."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, product
 from typing import Any
 
 import shapely
 
+from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, shape_at_pose
+from utak.kb.language.goal_words import CORNER_NAMES
 from utak.kb.language.terms import Fact
 from utak.planner.goals.placement import Placement
-from utak.planner.goals.robot_goals import corner_side
+from utak.planner.goals.robot_goals import along, corner_side, hidden_from
+from utak.planner.screen.projection import dilate
 from utak.planner.situation import Situation
+from utak.planner.stages import DOOR_GOALS, is_at_start
 
 REGION_ROUNDING = 1e-6  # squares, or squares of area, that rounding errors of shapely may make (convention)
 CORNER_REACH = (1.0, 1.0)  # squares east and north of a corner within which the robot is at it (meaning of the goal)
-OPPOSITE_CORNERS = (("northeast", "southwest"), ("northwest", "southeast"))
+CLEAR_OF_DOORS = 2  # squares between a doorway and what is in the midst of a room, at least; a convention
+OPPOSITE_CORNER = dict(zip(CORNER_NAMES, reversed(CORNER_NAMES), strict=True))
 
 
 def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
     """Find two of some goals that cannot hold at once for one object."""
-    # None when each two of them may hold at once.
-    for (one, a), (other, b) in combinations(enumerate(placements), 2):
-        if all(placement.ends and not placement.missing for placement in (a, b)):
-            pairs = product(*([*placement.ends.values(), *placement.loose.values()] for placement in (a, b)))
-            if not any(_may_share(first, second, shape) for first, second in pairs):
-                return one, other
+    known = [(number, _all_ends(one)) for number, one in enumerate(placements) if one.ends and not one.missing]
+    for (one, a), (other, b) in combinations(known, 2):
+        if a and b and not any(_may_share(first, second, shape) for first, second in product(a, b)):
+            return one, other
     return None
 
 
-def opposite_corners_reason(goals: Sequence[Fact], situation: Situation, length: float = 0.0) -> str:
-    """Return in words why nothing can be at two opposite corners at once; "" when the goals do not ask for that."""
-    wanted = set(map(corner_side, goals))
-    for one, other in OPPOSITE_CORNERS:
-        if {one, other} <= wanted:
-            points = (situation.corners[side].point for side in (one, other))
-            (x, y), (u, v) = (situation.model.place_to_utak(*point) for point in points)
-            along = abs(x - u + y - v) if one == "northeast" else abs(x - u - y + v)
-            if along > 2 * sum(CORNER_REACH) + math.sqrt(2) * length:
-                return f"the {one} and the {other} corner are too far apart to be at both at once"
+def _all_ends(placement: Placement) -> Sequence[End]:
+    """Return ends of which an object meets one where its goal holds; () where it may hold elsewhere, too."""
+    if placement.some:
+        return tuple(placement.must_reach.ends().values())
+    return (*placement.ends.values(), *placement.loose.values())
+
+
+def too_far_reason(
+    goals: Sequence[Fact], situation: Situation, length: float = 0.0, fixed: Mapping[str, Any] | None = None
+) -> str:
+    """Return in words why nothing can be at a corner and elsewhere at once, whatever floor is found; "" if it may be.
+
+    Parameters
+    ----------
+    goals : of one thing, of which those for a corner count: more floor puts a corner further out, never further in.
+    situation : what is believed.
+    length : in squares, no two points of the thing are further apart.
+    fixed : by other goals in words, the region (shapely Polygon, squares, view frame) in which the thing lies then.
+    """
+    model, wanted = situation.model, {side for side in map(corner_side, goals) if side}
+    far = {side: along(side, *model.place_to_utak(*situation.corners[side].point)) for side in wanted}
+    for side, least in ((side, far[side] - sum(CORNER_REACH)) for side in sorted(wanted)):
+        other = OPPOSITE_CORNER[side]
+        if other in wanted and least > sum(CORNER_REACH) - far[other] + 2 * length:
+            return f"the {side} and the {other} corner are too far apart to be at both at once"
+        for goal, region in (fixed or {}).items():
+            points = shapely.get_coordinates(region.envelope)
+            if least > max(along(side, *model.place_to_utak(x, y)) for x, y in points.tolist()):
+                return f"the {side} corner is too far from where {goal} holds"
     return ""
+
+
+def is_apart_from_start(goals: Sequence[Fact], began: XY, situation: Situation) -> bool:
+    """Return whether nothing can be where the robot woke and, as other goals ask, away from where it began itself.
+
+    Parameters
+    ----------
+    goals : of one thing.
+    began : (x, y) where it began, in squares, map frame.
+    situation : what is believed.
+    """
+    # That is so where all floor about the place of waking is in sight of where the thing began, or in the midst of the
+    # room in which it began.
+    model, names = situation.model, {goal.name for goal in goals}
+    row, column = model.view.locate(*model.frame.origin)
+    if not any(map(is_at_start, goals)) or model.anew or min(row, column) < 1:
+        return False
+    near = (slice(row - 1, row + 2), slice(column - 1, column + 2))  # what is at the start touches it
+    if not model.space[near].all():
+        return False
+    if "around" in names and not hidden_from(model.verge | ~model.view.seen, model, began)[near].any():
+        return True
+    if names.isdisjoint(DOOR_GOALS):
+        return False
+    own = model.view.locate(*began)
+    partitions = (situation.rooms, situation.rooms_by_sure_walls)
+    apart = (dilate(one.doorways, CLEAR_OF_DOORS) | (one.labels != one.labels[own]) for one in partitions)
+    return not any(elsewhere[near].any() for elsewhere in apart)
 
 
 def _may_share(one: End, other: End, shape: Any) -> bool:

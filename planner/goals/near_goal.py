@@ -16,11 +16,11 @@ from utak.geometry.motion.se2 import Pose
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.terms import Fact, Number, Text
 from utak.kb.language.wkt import parse_wkt
+from utak.kb.task.described import BESIDE_DISTANCE
 from utak.kb.world.model import Node
 from utak.planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, to_view_frame
 from utak.planner.situation import Situation
 
-BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)
 BESIDE_AXIS_DISTANCE = 0.7  # squares in each axis: less than BESIDE_DISTANCE across a corner, too (derived)
 POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the meaning of the goal)
 
@@ -31,8 +31,9 @@ def start_placement(node: Node, situation: Situation) -> Placement:
     return touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
-def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is beside another one, the meaning of a parameter: within one square of its squares."""
+def beside_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
+    """Return where an object is beside the one that a goal names: within one square of its squares."""
+    other = str(goal.args[1])
     target = situation.object_of(other)
     if target is None:
         return Placement({}, situation.nothing_is(other))

@@ -3,7 +3,7 @@
 Ends (geometry.manipulation.goals) are in the view frame, in squares, as all manipulation planning is.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from utak.geometry.kernels.arrays import XY, Bools
@@ -20,6 +20,7 @@ from utak.planner.goals.placement import Placement, RegionEnds, meets_any_end, t
 from utak.planner.goals.references import READY_GOAL, ready_placement
 from utak.planner.goals.robot_goals import corner_side, door_viewpoints, hidden_from, next_room_missing, room_numbers
 from utak.planner.situation import Situation
+from utak.planner.stages import is_at_start
 
 REGION_RIM = 1.0  # squares from the edge of a region in which an object may not be within it after all (convention)
 
@@ -39,7 +40,7 @@ class OptimisticEnds:
 
 def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Compute where a goal holds for an object."""
-    found = _placement(goal, node, began, situation)
+    found = PLACEMENTS[goal.name](goal, node, began, situation)
     if not situation.model.view.sure:
         found = replace(found, ends={name: _without_rim(end) for name, end in found.ends.items()})
     in_corner = any(isinstance(end, InCorner | Between) for end in found.ends.values())  # `holds` is exact there
@@ -54,24 +55,11 @@ def _without_rim(end: End) -> End:
     return end if inner.polygon.is_empty else inner
 
 
-def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
-    """Compute where a goal holds for an object, as for `goal_placement`, as if nothing that is settled were wrong."""
-    where = goal.args[1]
+def _at(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
+    """Return the placement at a corner, at the robot's start or at a thing."""
     if side := corner_side(goal):
         return corner_placement(side, node, situation)
-    if goal.name == "at" and str(where) == "start":
-        return start_placement(node, situation)
-    if goal.name in ("at", "beside"):
-        return beside_placement(str(where), node, situation)
-    if goal.name in ("in", "through"):
-        return _next_room(began, node, situation)
-    if goal.name == "around":
-        return _around_corner(began, node, situation)
-    if goal.name == "pose":
-        return pose_placement(goal, node, situation)
-    if goal.name == READY_GOAL:
-        return ready_placement(goal, node, situation)
-    raise ValueError(f"not a goal for something carried: {goal}")
+    return start_placement(node, situation) if is_at_start(goal) else beside_placement(goal, node, situation)
 
 
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
@@ -79,19 +67,19 @@ def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> boo
     return meets_any_end(ends, to_view_frame(node.polygon, situation))
 
 
-def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
-    """Return the placement beyond a door of the room that holds `began`, a point (x, y) of the map frame."""
+def _next_room(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
+    """Return the placement in the rooms that are meant, for what began at a point (x, y) of the map frame."""
     rooms = situation.rooms
-    beyond, viewpoints = situation.next_rooms(began)
+    beyond, viewpoints = situation.rooms_beyond(goal, began)
     if beyond.any():
         parts = _room_parts(rooms, beyond)
         ends = RegionEnds(parts).ends()
         if viewpoints and _meets_one(ends, node, situation):
             return Placement({}, viewpoints[0].what, viewpoints, there=True)
-        by_the_way = BoundsByTheWay("in", began, beyond, situation)
+        by_the_way = BoundsByTheWay(goal, began, beyond, situation)
         return Placement(ends, hoped=OptimisticEnds(parts, situation), by_the_way=by_the_way)
-    missing, viewpoints = next_room_missing(situation), door_viewpoints(situation)
-    parts = _room_parts(*situation.likely_next_rooms(began))
+    missing, viewpoints = next_room_missing(goal, situation), door_viewpoints(situation)
+    parts = _room_parts(*situation.likely_rooms_beyond(goal, began))
     likely = RegionEnds(parts).ends()
     if _meets_one(likely, node, situation):
         return Placement({}, missing, viewpoints, there=True)
@@ -103,7 +91,7 @@ def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
     return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 
 
-def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
+def _around_corner(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Return the placement out of sight of `began`, a point (x, y) of the map frame, behind a corner of the verge."""
     model = situation.model
     hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))
@@ -113,3 +101,15 @@ def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
         missing = "no corner is seen yet that hides a place for it"
         return Placement({}, missing, must_reach=RegionEnds(rest))
     return Placement(RegionEnds({"hidden": hidden}).ends(), hoped=OptimisticEnds({"hidden": hidden}, situation))
+
+
+# By goal word: where it holds for a thing that was first believed at a point (x, y) of the map frame.
+PLACEMENTS: Mapping[str, Callable[[Fact, Node, XY, Situation], Placement]] = {
+    "at": _at,
+    "beside": lambda goal, node, began, situation: beside_placement(goal, node, situation),
+    "in": _next_room,
+    "through": _next_room,
+    "around": _around_corner,
+    "pose": lambda goal, node, began, situation: pose_placement(goal, node, situation),
+    READY_GOAL: lambda goal, node, began, situation: ready_placement(goal, node, situation),
+}

@@ -15,7 +15,7 @@ from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
 from utak.geometry.motion.se2 import Pose, Translate
 from utak.geometry.raster.runs import mask_to_polygon
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.screen.projection import dilate, shift_mask

@@ -11,8 +11,8 @@ from functools import reduce
 import numpy as np
 
 from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
 from utak.kb.language.terms import Fact, Symbol
-from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
 from utak.kb.world.model import Node
 from utak.planner.goals.near_goal import touching
 from utak.planner.goals.placement import Placement, RegionEnds, to_view_frame
@@ -20,16 +20,15 @@ from utak.planner.goals.robot_goals import Destination, destination, jointly
 from utak.planner.navigation.encircle import encircling_routes
 from utak.planner.screen.projection import dilate, indices_to_mask
 from utak.planner.situation import Situation
-from utak.planner.stages import Stage
+from utak.planner.stages import TOUCHING_GOALS, Stage
 
-RELATIONS = ("at", "beside")  # goals whose second argument may be a thing: then the two may change places
 READY_GOAL = "ready"  # ready(x, G): thing x lies so that goal G of the robot can hold
 MAX_SPOT_SQUARES = 9  # squares of a place of the robot beside which a thing is brought; of a larger one it is part
 
 
 def is_about_two_things(goal: Fact, parameters: Iterable[str]) -> bool:
     """Return whether a goal relates its subject to a thing of the task that a parameter means."""
-    return goal.name in RELATIONS and str(goal.args[1]) in parameters
+    return goal.name in TOUCHING_GOALS and str(goal.args[1]) in parameters
 
 
 def is_moved_for_others_only(parameter: str, goals: Iterable[Fact], parameters: Iterable[str]) -> bool:

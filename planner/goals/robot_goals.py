@@ -4,7 +4,7 @@ The side of a corner is northeast, northwest, southeast or southwest in the robo
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
@@ -30,6 +30,7 @@ from utak.planner.sights.frontiers import (
     with_chances,
 )
 from utak.planner.situation import Situation
+from utak.planner.stages import is_at_start
 
 # How much further towards a corner (east and north added, in squares) unseen floor may go. All were tuned on random
 # worlds (benchmarks.campaign).
@@ -91,22 +92,14 @@ def wall_sides(corner: Corner) -> tuple[int, int]:
 
 def destination(goal: Fact, situation: Situation) -> Destination:
     """Compute the squares on which a goal of place holds for the robot."""
-    where = goal.args[1]
-    if side := corner_side(goal):
-        return corner_destination(side, situation)
-    if goal.name == "at" and str(where) == "start":
-        return Destination(_start_squares(situation.model))
-    if goal.name in ("at", "beside", "circled"):
-        return beside_destination(str(where), situation)
-    if goal.name in ("in", "through"):
-        return _room(situation)
-    if goal.name == "around":
-        return around_corner_destination(situation)
-    raise ValueError(f"not a goal of place: {goal}")
+    return DESTINATIONS[goal.name](goal, situation)
 
 
-def corner_destination(side: str, situation: Situation) -> Destination:
-    """Return the convex corner of the known floor furthest towards a side of the robot's own frame: its square."""
+def _place_destination(goal: Fact, situation: Situation) -> Destination:
+    """Return where the robot is at a corner, at its start or at a thing."""
+    side = corner_side(goal)
+    if not side:
+        return Destination(_start_squares(situation.model)) if is_at_start(goal) else _thing(goal, situation)
     unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
         return unknown
@@ -197,10 +190,10 @@ def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
     steps = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
     x, y = np.array([unseen[rows + 1 + y, columns + 1 + x].sum() for x, y in steps]) @ steps
     far = math.hypot(x, y)
-    return float(_along(side, *model.frame.to_utak(x / far, y / far))) if far else 1.0
+    return float(along(side, *model.frame.to_utak(x / far, y / far))) if far else 1.0
 
 
-def _along(side: str, east: Any, north: Any) -> Any:
+def along(side: str, east: Any, north: Any) -> Any:
     """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed."""
     return (east if "east" in side else -east) + (north if "north" in side else -north)
 
@@ -210,11 +203,12 @@ def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> f
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
     east, north = np.column_stack(model.frame.place_to_utak(*points)).T
-    return float(_along(side, east, north).max())
+    return float(along(side, east, north).max())
 
 
-def beside_destination(parameter: str, situation: Situation) -> Destination:
-    """Return the floor that is at most one square away from the object that a parameter means."""
+def _thing(goal: Fact, situation: Situation) -> Destination:
+    """Return the floor that is at most one square away from the object that a goal names."""
+    parameter = str(goal.args[1])
     node = situation.object_of(parameter)
     if node is None:
         return unknown_destination(situation.nothing_is(parameter))
@@ -240,22 +234,24 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     return Destination(in_reach(squares), also=in_reach(np.flatnonzero(near)))
 
 
-def _room(situation: Situation) -> Destination:
-    """Return the reachable floor of the rooms next to the one in which the robot woke."""
-    beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
+def _room(goal: Fact, situation: Situation) -> Destination:
+    """Return the reachable floor of the rooms that are meant: where nothing tells, those next to that of waking."""
+    beyond, viewpoints = situation.rooms_beyond(goal, situation.model.frame.origin)
     if viewpoints:
         return unknown_destination(viewpoints[0].what, viewpoints)
     squares = np.flatnonzero(beyond & situation.cost_maps.floor)
     if len(squares):
         return Destination(squares)
-    what = next_room_missing(situation)
-    likely = _likely_rooms(situation)
+    what = next_room_missing(goal, situation)
+    likely = _likely_rooms(goal, situation)
     return unknown_destination(what, (*likely, *door_viewpoints(situation, tried=bool(likely))))
 
 
-def next_room_missing(situation: Situation) -> str:
-    """Return in words why no next room is known: none can be reached, or no neck is a door."""
+def next_room_missing(goal: Fact, situation: Situation) -> str:
+    """Return in words why no such room is known: none can be reached, no neck is a door, or none is as claimed."""
     model, opening = situation.model, situation.rooms.opening
+    if parameter := situation.described_by(goal):
+        return situation.nothing_is(parameter)
     if situation.rooms.sure:
         return "no next room is seen yet that can be reached"
     if opening is None:
@@ -269,10 +265,10 @@ def next_room_missing(situation: Situation) -> str:
     )
 
 
-def _likely_rooms(situation: Situation) -> list[Viewpoint]:
+def _likely_rooms(goal: Fact, situation: Situation) -> list[Viewpoint]:
     """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors."""
     model = situation.model
-    rooms, beyond = situation.likely_next_rooms(model.frame.origin)
+    rooms, beyond = situation.likely_rooms_beyond(goal, model.frame.origin)
     beyond &= situation.cost_maps.floor
     if (beyond & situation.cost_maps.looked_from).any():
         return []
@@ -291,7 +287,7 @@ def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoin
     return (*door_jambs(situation.cost_maps, doors), *unreached_rooms(situation.cost_maps))
 
 
-def around_corner_destination(situation: Situation) -> Destination:
+def around_corner_destination(goal: Fact, situation: Situation) -> Destination:
     """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between."""
     model = situation.model
     squares = np.flatnonzero(hidden_from(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
@@ -323,3 +319,14 @@ def _start_squares(model: WorldModel) -> SquareIndices:
 def robot_stands_on(squares: SquareIndices, model: WorldModel) -> bool:
     """Return whether the robot stands on one of some squares; False for no squares."""
     return bool((squares == square_index(model.place, model)).any())
+
+
+# By goal word: where it holds for the robot.
+DESTINATIONS: Mapping[str, Callable[[Fact, Situation], Destination]] = {
+    "at": _place_destination,
+    "beside": _thing,
+    "circled": _thing,
+    "in": _room,
+    "through": _room,
+    "around": around_corner_destination,
+}

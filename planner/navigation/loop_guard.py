@@ -46,7 +46,6 @@ class LoopGuard:
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
         """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS."""
-        # The rest stays in order;
         known = _knowledge(model)
         if known != self._known:
             self._known = known

@@ -52,7 +52,6 @@ def _by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 
 def _single(find: Callable[..., Floats | None], free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the only route of a path-finder, with the clearance of the squares that it touches; [] for none."""
-    # None for no route.
     points = find(free, _centre(start), _centre(goal))
     if points is None:
         return []

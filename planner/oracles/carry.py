@@ -18,7 +18,7 @@ from utak.geometry.motion.se2 import Pose, Rotate, Translate
 from utak.geometry.raster.components import components
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from utak.geometry.raster.rasterize import squares
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.world.model import Node
 from utak.planner.carrying.infeasibility import how_narrow
 from utak.planner.carrying.manipulation_oracle import swept_squares
@@ -218,7 +218,6 @@ class CarryOracle:
         shut: frozenset[str],
     ) -> tuple[XY, ...]:
         """Return the grasps of an object that end off most of the floor, once it lies."""
-        # () if the plan's own does not.
         margin = self.floors.margin
         square = int(after.robot[1]) + margin, int(after.robot[0]) + margin  # row, column
         sure = self._free(after, None, FloorKind.SURE, shut)

@@ -114,13 +114,11 @@ def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = 
 
 def _roomy(cost_maps: CostMaps) -> Bools | None:
     """Return the safe squares with safe squares all around, (rows, columns) bool on the arrays of the view."""
-    # None while the orientation is certain enough, so that no such room is asked for.
     return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
 
 def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
     """Return whether a straight move between two squares (column, row) keeps enough room."""
-    # None when all squares are roomy.
     far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
     halfway = (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
     return roomy is None or far <= TIGHT_MOVE_LENGTH or sweep_is_free(roomy, halfway, there)

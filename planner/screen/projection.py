@@ -56,7 +56,6 @@ class CostMaps:
 
     def free(self, level: int) -> Bools:
         """Compute the squares that may be crossed at a certainty level, (rows, columns) bool."""
-        # A new array at each call.
         view = self.model.view
         mask = view.probability <= LEVEL_MAX_PROBABILITY[min(level, len(LEVEL_MAX_PROBABILITY) - 1)]
         if level == UNSEEN_LEVEL:  # the counts alone decide, whatever the sampled completions show
@@ -88,7 +87,6 @@ class CostMaps:
 
     def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached."""
-        # None when none can be reached at any level.
         for level in range(UNSEEN_LEVEL + 1):
             far = self.distances[level].ravel()[squares]
             if (far != GEODESIC_UNREACHED).any():

@@ -73,7 +73,6 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
 
 def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Square]:
     """Search the shortest edge-connected path within `squares` from `start` to `goal`, both included, breadth first."""
-    # Raises ValueError when there is none.
     before = {start: start}
     queue = deque([start])
     while queue and goal not in before:

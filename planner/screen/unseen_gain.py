@@ -8,10 +8,12 @@ VERGE_WEIGHT when they are occupied only. The counts within the reach of the eye
 import numpy as np
 from numpy.typing import NDArray
 
+from utak.geometry.counts.retina import RETINA_REACH
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.kb.mapping.occupancy import MapView
 
-GAIN_REACH = 14  # squares, in rows and columns, within which an unseen square comes into sight: below the retina's 16
+# Squares, in rows and columns, within which an unseen square comes into sight: a little below the retina's reach
+GAIN_REACH = RETINA_REACH - 2
 VERGE_WEIGHT = 0.1  # the weight of an unseen square beside the verge, where one beside floor counts 1 (tuned)
 OCCUPIED_THRESHOLD = 0.5  # a seen square with at most this probability of being occupied counts as floor here
 BESIDE_FLOOR, BESIDE_WALL, BESIDE_NOTHING = 0, 1, 2  # labels of squares by what is nearest; the least one wins

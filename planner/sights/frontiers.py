@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from utak.geometry.counts.retina import RETINA_ZONES
 from utak.geometry.kernels.arrays import Bools, Labels
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
@@ -28,7 +29,8 @@ from utak.planner.screen.unseen_gain import VERGE_WEIGHT
 
 WHAT_IS_FELT = "it was not felt whether something stands against the wall"
 FOVEA_RANGE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
-MIDDLE_ZONE_RANGE = 7  # squares from which a square lies within the middle zone of the retina (derived: offsets -8..7)
+# Squares from which a square lies within the middle zone of the retina (derived: offsets -8..7)
+MIDDLE_ZONE_RANGE = RETINA_ZONES[1][0] - 1
 JAMB_RANGE = 8  # squares around the end of a door's neck within which its walls are looked at (tuned on random worlds)
 VIEW_SPACING = 2  # squares from earlier viewpoints beyond which a new one is sought first (tuned on random worlds)
 GAP_LEVEL = 2  # certainty level at which a way leads through a likely gap (tuned on random worlds)

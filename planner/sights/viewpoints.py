@@ -27,6 +27,7 @@ from utak.planner.sights.frontiers import (
 from utak.planner.subgoal_kind import SubgoalKind
 
 MIN_SIGHTING_PROBABILITY = 0.1  # a place that holds a wanted object with at least this is worth a look (tuned)
+MOST_LIKELY = 99  # percent of belief in what may be so, at most: 100 is for what is not in question (convention)
 MIN_APPROACH_PROBABILITY = 0.5  # with at least this probability the robot goes right up to it (tuned on random worlds)
 RESTART_COST_WALKING = 4.0  # squares of way that setting out anew after a look costs a robot that only walks (tuned)
 RESTART_COST_CARRYING = 12.0  # the same for a robot that carries objects and counts commands (tuned on random worlds)
@@ -57,7 +58,7 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
         chance = float(likely.ravel()[spot].max())
         near = inspection_squares(cost_maps, mask, chance, to)
         if len(near):
-            found.append((spot, Viewpoint(near, what, round(100 * chance))))
+            found.append((spot, Viewpoint(near, what, min(MOST_LIKELY, round(100 * chance)))))
     return found
 
 

@@ -196,7 +196,6 @@ def _things(model: WorldModel, embedded: bool = False) -> Bools:
 
 def _behind(front: Bools, space: Bools, reached: Bools, seen: Bools, step: Square) -> dict[WallKind, Bools]:
     """Return which of some squares of wall have what behind them."""
-    # Floor reached or not, unseen squares, or wall alone.
     kinds = {kind: np.zeros_like(front) for kind in WallKind}
     left, back = front.copy(), (-step[0], -step[1])
     new, solid = space & ~reached, seen & ~space

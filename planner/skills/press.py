@@ -48,7 +48,6 @@ class Presser:
 
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
         """Note the presses of a held object that is believed to lie where a goal holds."""
-        # `next` then returns them in order.
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
             self._left, self._last = list(land.presses.values()), None

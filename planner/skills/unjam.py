@@ -36,8 +36,8 @@ def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool
     def passes(aside: float) -> bool:
         """Return whether the object can be drawn back so, then pushed on until ROOM_AHEAD squares beyond the stop."""
         push = retreat(aside)
-        free = walls.first_contact(body, push).fraction == 1
-        return free and walls.first_contact(body.after(push), onward).fraction == 1
+        free = walls.first_contact(body, push) == 1
+        return free and walls.first_contact(body.after(push), onward) == 1
 
     sides = sorted((ASIDE_STEP * n for n in range(-MAX_ASIDE_STEPS, MAX_ASIDE_STEPS + 1)), key=abs)
     least = next((aside for aside in sides if passes(aside)), None)

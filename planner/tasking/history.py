@@ -1,7 +1,7 @@
 """The history of a run: what was brought where before a task plan is made, as facts of the past of that plan."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import NamedTuple
 
 from utak.geometry.kernels.arrays import XY
@@ -32,6 +32,11 @@ class DoneErrands:
     def note(self, situation: Situation, ended: Errand | None = None) -> None:
         """Note what was brought somewhere and put down, and by which errand of a plan, if one came to its end now."""
         by = "" if ended is None else ended.subject
+        now = situation.renamed
+        self._done = [
+            one._replace(name=now.get(one.name, one.name), places={now.get(x, x): p for x, p in one.places.items()})
+            for one in self._done
+        ]
         for name, track in sorted(situation.carried.items()):
             moments = [done.moment for done in self._done if done.name == name] or [1]
             rest = track[: moments[-1]]
@@ -59,10 +64,11 @@ class DoneErrands:
         ]
         return f"put_{put[-1]}" if put else ELSEWHERE
 
-    def facts(self, situation: Situation) -> tuple[str, ...]:
+    def facts(self, situation: Situation, arrived: Container[str] = ()) -> tuple[str, ...]:
         """Return what was done, without what a plan may go on with, and where things lay and lie, as facts."""
         found: list[str] = []
-        past = self._done[:-1] if self._done and self._done[-1].errand is None else self._done
+        goes_on = self._done and self._done[-1].errand is None and self._done[-1].name not in arrived
+        past = self._done[:-1] if goes_on else self._done
         for number, (name, places, _, errand) in enumerate(past):
             found.append(f"done({'clear' if errand is None else errand.action}({name},put_{number}),{number})")
             found += [f"done(go({door}),{number})" for door in (() if errand is None else errand.doors)]

@@ -9,8 +9,8 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, moved
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.world.model import Node
 from utak.planner.goals.placement import meets_end
@@ -68,8 +68,13 @@ class _Kept:
     turned: Mapping[str, float]  # by how many degrees each thing had been turned when the plan was made
     # The middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans
     led_round: tuple[tuple[XY, ...], ...] = ()
-    read: frozenset[str] = frozenset()  # what users' rules read of things and doors
+    read: frozenset[str] = frozenset()  # what users' rules read of the world model
     number: int = 0  # the errand that is done now
+
+    @property
+    def errand(self) -> Errand | None:
+        """The errand that is done now; None when all are done."""
+        return self.plan.errands[self.number] if self.number < len(self.plan.errands) else None
 
     def means_what_is_bound(self, problem: TaskProblem) -> bool:
         """Return whether each parameter still means in a problem what it means in the plan."""
@@ -95,6 +100,7 @@ class Intention:
         self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self._meant: Mapping[str, str] = {}  # the object that the last plan meant by each parameter of the task
         self.blamed: tuple[str, ...] = ()
+        self.blamed_before: tuple[str, ...] = ()  # the last rules of the run because of which there was no plan
         self.shut_out = False  # whether these leave no plan for good, whatever else is found
 
     @property
@@ -107,7 +113,7 @@ class Intention:
     @property
     def followed(self) -> TaskPlan | None:
         """The plan whose present step is done, from that step on: also one that settles something; None for none."""
-        return self.plan or self._settling or self._under_way
+        return self._settling or self.plan or self._under_way
 
     @property
     def attempt(self) -> TaskPlan | None:
@@ -145,8 +151,8 @@ class Intention:
         # Return its first step, or "" and the words for what users' rules forbid then.
         stage = self._without_dropped(stage)
         problem = problem_of(stage, situation, self.where, self._history)
-        if problem is not None and rules_reach(TASK_ENCODING.stem, situation.rules):
-            problem = replace(problem, past=self._history.facts(situation))
+        if problem is not None:
+            problem = self._with_past(problem, situation)
         refuted = () if self._attempt is None else self._attempt.refutations
         plan, left = plan_that_settles(problem, stage, situation, given, refuted)
         step = step_that_settles(plan, any(fact.startswith("stuck(") for fact in given))
@@ -160,7 +166,6 @@ class Intention:
 
     def refused_meanings(self, stage: Stage, situation: Situation) -> frozenset[tuple[str, str]]:
         """Return the (parameter, object) pairs bound now that users' rules leave to no plan."""
-        # None while there is one.
         attempt = self.attempt
         if attempt is None or not attempt.proved or not self.blamed:
             return frozenset()
@@ -171,10 +176,8 @@ class Intention:
     def next_errand(self, stage: Stage, situation: Situation) -> NextErrand | None:
         """Return the next errand of the plan; None when there is no plan, or the next step is the robot's own."""
         kept, problem, stage = self._kept, self._problem, self._without_dropped(stage)
-        if kept is None or problem is None or kept.number >= len(kept.plan.errands):
-            return None
-        errand = kept.plan.errands[kept.number]
-        if errand.subject == ROBOT:
+        errand = None if kept is None else kept.errand
+        if kept is None or problem is None or errand is None or errand.subject == ROBOT:
             return None
         spot = kept.spots.get((errand.subject, errand.place))
         node = problem.nodes[errand.subject]
@@ -229,10 +232,10 @@ class Intention:
     def own_wish(self) -> tuple[Errand, Fact] | None:
         """Return the next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
         kept = self._kept
-        if kept is None or kept.number >= len(kept.plan.errands):
+        errand = None if kept is None else kept.errand
+        if kept is None or errand is None or errand.subject != ROBOT:
             return None
-        errand = kept.plan.errands[kept.number]
-        wish = wish_of_place(errand.place, kept.stage) if errand.subject == ROBOT else None
+        wish = wish_of_place(errand.place, kept.stage)
         return None if wish is None else (errand, wish)
 
     def wishes_that_hold(self) -> tuple[str, ...]:
@@ -256,8 +259,7 @@ class Intention:
     def _moved_on(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
         """Return the plan of a stage, moved on over errands that came to their ends, which are noted."""
         kept = None if self._kept is None or self._kept.stage != stage else self._kept
-        while kept is not None and kept.number < len(kept.plan.errands):
-            errand = kept.plan.errands[kept.number]
+        while kept is not None and (errand := kept.errand) is not None:
             spot = kept.spots.get((errand.subject, errand.place))
             known = problem.places.get((errand.subject, errand.place))
             end = known if spot is None else _moved_to_view(spot, situation)
@@ -299,12 +301,13 @@ class Intention:
         if all(goal.holds for goal in problem.goals) and not ruled:
             self._attempt = None
             return None
-        problem = replace(problem, past=self._history.facts(situation) if ruled else ())
+        problem = self._with_past(problem, situation)
         lying = _lying(situation)
         # More that is seen leaves less that may be free, so only more floor to put things on can bring a new plan.
         floor = int(math.log(max(1, situation.cost_maps.free(0).sum()), MORE_FLOOR))
         doors = tuple((door.name, door.sides) for door in situation.rooms.doors) if ruled else ()
-        believed = (lying, frozenset(problem.places), floor, len(self._tried), doors)
+        read = facts_rules_read(situation)
+        believed = (lying, frozenset(problem.places), floor, len(self._tried), doors, read)
         if self._hopeless is not None and (situation.model.held is not None or believed == self._hopeless):
             return None
         tried = [refutation for where, refutation in self._tried if where == lying]
@@ -314,6 +317,7 @@ class Intention:
             if not made.plan.unmet:
                 break
         self.blamed = rules_without_plan(made, situation)
+        self.blamed_before = self.blamed or self.blamed_before
         self.shut_out = rules_alone_leave_no_plan(made, self.blamed, situation)
         self._hopeless = believed if made.plan.unmet else None
         self._attempt = made.plan if made.plan.unmet else None
@@ -332,8 +336,14 @@ class Intention:
         self._meant, plan = dict(chosen), replace(made.plan, meanings=chosen)
         names, places = tuple(problem.nodes), problem.places_meant(self._meant)
         led_round = doors_led_round(made, situation)
-        read = facts_rules_read(situation)
         return _Kept(plan, stage, names, places, spots, bounds, ways, turned, led_round, read)
+
+    def _with_past(self, problem: TaskProblem, situation: Situation) -> TaskProblem:
+        """Return a problem with what was done before, where users' rules are about task plans."""
+        if not rules_reach(TASK_ENCODING.stem, situation.rules):
+            return problem
+        arrived = {goal.subject for goal in problem.goals if goal.holds}
+        return replace(problem, past=self._history.facts(situation, arrived))
 
 
 def with_meanings(situation: Situation, meanings: Mapping[str, str]) -> Situation:

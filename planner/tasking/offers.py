@@ -48,7 +48,6 @@ class Offers:
 
     def __init__(self, floors: Floors, rooms: Ints | None = None) -> None:
         """Make offers for some floors; nothing is in the way."""
-        # None for places anywhere.
         self._rooms = None if rooms is None else np.pad(rooms, floors.margin)
         sure = floors.by_kind[FloorKind.SURE]
         self.aside: list[tuple[str, str]] = []

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.reasoning.solver import solve_within
 from utak.planner.navigation.subgoals import PLANNER_ASP
 from utak.planner.tasking.task_plan import Errand

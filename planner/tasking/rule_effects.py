@@ -7,17 +7,21 @@ from typing import Any, NamedTuple
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.reasoning.encodings import BoundedAnswer
+from utak.kb.reasoning.interfaces import WORLD_PREDICATES
 from utak.kb.reasoning.solver import solve_within
-from utak.kb.reasoning.user_rules import predicates_read, rules_reach, rules_to_blame, world_facts_named
+from utak.kb.reasoning.user_rules import predicates_read, rules_reach, rules_to_blame
 from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.model import hundredths
-from utak.kb.world.place_names import SAME_DOOR
+from utak.kb.world.rooms import SAME_DOOR
 from utak.planner.oracles.problem import TableState, TaskProblem
 from utak.planner.situation import Situation
 from utak.planner.tasking.facts import problem_facts
 from utak.planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
 from utak.planner.tasking.search import MadePlan
 
+# The names of what rules read in the task plan that may change: what is believed, and what was settled.
+BELIEVED = frozenset(name for name, _ in WORLD_PREDICATES) | {"size", "settled", "settling", "left", "stuck", "came_to"}
+ANY_DOOR = "unseen_door"  # a door that nobody has seen
 ANY_ROOM = "unseen_room"  # a room that nobody has seen, behind a door of which nothing is known
 DOOR_COMMANDS = 1  # that planner/asp/task/go.lp reckons for a pass through a door
 
@@ -56,6 +60,8 @@ class DoorRules(NamedTuple):
     closed: frozenset[str] = frozenset()  # the names of doors that no plan passes
     # By the name of a door: the commands that rules add to a pass through it, where they add any
     prices: Mapping[str, int] = {}
+    # By the name of a door: how many commands fewer that is than rules say for the width believed, as it may be more
+    reliefs: Mapping[str, int] = {}
 
 
 def rules_about_doors(situation: Situation) -> DoorRules:
@@ -63,16 +69,25 @@ def rules_about_doors(situation: Situation) -> DoorRules:
     if not rules_reach(TASK_ENCODING.stem, situation.rules):
         return DoorRules()
     facts = _facts_about_doors(situation)
+    reads_width = "width" in predicates_read(TASK_ENCODING.stem, situation.rules)
     with record_decisions():  # questions about doors, not decisions
         without = _answer(facts, situation)
-        closed, prices = set(), {}
+        closed, prices, reliefs = set(), {}, {}
+        widths = {door.name: f"width({door.name},{hundredths(door.width_bound) - 1})" for door in situation.doors}
         for door in _doors_asked_about(situation):
             answer = _answer((*facts, f"asked({door})"), situation)
-            if answer.atoms is None or any(atom.name == "closed" for atom in answer.atoms):
+            if answer.atoms is None or _closes(answer.atoms):
                 closed.add(door)
             elif (price := answer.cost_at(1) - without.cost_at(1) - DOOR_COMMANDS) > 0:
                 prices[door] = price
-    return DoorRules(frozenset(closed), prices)
+                if not reads_width:
+                    continue
+                others = [fact for fact in facts if not fact.startswith(f"width({door},")]
+                widest = _answer((*others, widths[door], f"asked({door})"), situation)
+                saved = 0 if widest.atoms is None else answer.cost_at(1) - widest.cost_at(1)
+                reliefs[door] = max(0, min(saved, price) // 2)  # as likely as not
+                prices[door] -= reliefs[door]
+    return DoorRules(frozenset(closed), prices, reliefs)
 
 
 def rules_that_close(situation: Situation) -> tuple[str, ...]:
@@ -82,6 +97,16 @@ def rules_that_close(situation: Situation) -> tuple[str, ...]:
     for door in sorted(situation.closed.intersection(_doors_asked_about(situation))):
         blamed += rules_to_blame(TASK_ENCODING, situation.rules, (*facts, f"asked({door})"), _closes)
     return tuple(dict.fromkeys(blamed))
+
+
+def rules_close_all_doors(situation: Situation) -> bool:
+    """Return whether users' rules close even a door of which nothing is known, and so whatever may be found."""
+    if not situation.closed:
+        return False
+    unknown = (f"connects({ANY_DOOR},before_{ANY_DOOR},behind_{ANY_DOOR})", f"asked({ANY_DOOR})")
+    with record_decisions():  # a question about doors, not a decision
+        answer = _answer((*_facts_about_doors(situation), *unknown), situation)
+    return answer.atoms is None or _closes(answer.atoms)
 
 
 def _doors_asked_about(situation: Situation) -> list[str]:
@@ -115,9 +140,9 @@ def rules_without_plan(made: MadePlan, situation: Situation) -> tuple[str, ...]:
 
 
 def facts_rules_read(situation: Situation) -> frozenset[str]:
-    """Return what users' rules read of meanings, sizes, shapes, colours and widths: a plan is made anew with that."""
+    """Return the facts of the world model and of meanings that users' rules read: a plan is made anew with these."""
     named = predicates_read(TASK_ENCODING.stem, situation.rules)
-    read = (named | ({"bound"} if "meaning" in named else set())) & {"bound", "size", "shape", "colour", "width"}
+    read = (named & BELIEVED) | ({"bound"} if "meaning" in named else set())
     if not read:
         return frozenset()
     state = TableState({}, situation.model.place_on_view, None)
@@ -127,7 +152,7 @@ def facts_rules_read(situation: Situation) -> frozenset[str]:
 
 def rules_alone_leave_no_plan(made: MadePlan, blamed: Sequence[str], situation: Situation) -> bool:
     """Return whether users' rules leave no plan whatever geometry answers and whatever else is seen, for good."""
-    if not blamed or situation.closed or world_facts_named(TASK_ENCODING.stem, situation.rules, blamed):
+    if not blamed or situation.closed or BELIEVED & predicates_read(TASK_ENCODING.stem, situation.rules, blamed):
         return False  # other ways may be found, or what is believed may change
     named = {x for x, parameter in situation.task.parameters.items() if parameter.kind == "object"}
     if any(fact.startswith("done(") for fact in made.facts) or named - situation.binding.keys():

@@ -14,7 +14,7 @@ import numpy as np
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Translate
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.reasoning.encodings import encoding_constant
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.task.binding import NO_MEANINGS

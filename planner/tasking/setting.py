@@ -9,8 +9,8 @@ import numpy as np
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Pose
+from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
 from utak.kb.language.terms import Fact
-from utak.kb.language.vocabulary import ROBOT, TRACK_GOALS
 from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.world.model import Node

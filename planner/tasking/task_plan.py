@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from utak.geometry.kernels.arrays import XY
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.planner.oracles.carry import Certainty
 from utak.planner.oracles.problem import ANYWHERE, PlacedGoal
 

@@ -1,6 +1,5 @@
 """The `utak` command: runs a subcommand, and turns errors into messages and exit codes."""
 
-import os
 import sys
 from collections.abc import Sequence
 from types import FrameType
@@ -18,6 +17,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         install_package_finder()
         from utak.simulator.cli import parsing  # noqa: F401 (all imports happen before anything is done)
+        from utak.simulator.terminal import exits
         from utak.simulator.terminal.streams import guard_streams, open_missing_streams
 
         if arguments is None:
@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with guard_streams() as (_, err):
             code = _run_reporting_errors(arguments, interrupts)
             err.flush()
-        return _final_code(code, err.lost)
+        return exits.LOST_OUTPUT if err.lost and code == exits.SUCCESS else code
     except KeyboardInterrupt:
         return 130  # interrupted before the work began or after it ended
     finally:
@@ -101,54 +101,44 @@ def signal_again() -> None:
 
 def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
     """Run with guarded streams, report errors and return the exit code."""
-    from utak.kb.language.diagnostics import BadInputError, CannotOpenError
     from utak.simulator.terminal import exits
-    from utak.simulator.terminal.outcome import bug_message
+    from utak.simulator.terminal.outcome import outcome_of
     from utak.simulator.terminal.streams import StreamError
 
     try:
-        code = _parse_and_execute(arguments)
-        sys.stdout.flush()
-    except BadInputError as bad:
-        return _print_error(exits.BAD_INPUT, str(bad))
-    except CannotOpenError as absent:
-        return _print_error(exits.CANNOT_OPEN, f"utak: {absent}")
+        code, message = outcome_of(_parse_and_execute, arguments)
     except KeyboardInterrupt:
-        return _print_error(exits.INTERRUPTED, "utak: interrupted")
+        code, message = exits.INTERRUPTED, "utak: interrupted"
     except BrokenPipeError:
         return exits.NO_READER
     except StreamError as lost:
-        return _print_error(exits.LOST_OUTPUT, f"utak: {lost}")
-    except Exception as bug:
-        if interrupts.seen:
-            return _print_error(exits.INTERRUPTED, "utak: interrupted")
-        if os.environ.get("UTAK_DEBUG"):
+        code, message = exits.LOST_OUTPUT, f"utak: {lost}"
+    except Exception:  # with UTAK_DEBUG
+        if not interrupts.seen:
             raise
-        return _print_error(exits.OUR_BUG, bug_message(bug))
+        code, message = exits.OUR_BUG, ""
+    if code == exits.OUR_BUG and interrupts.seen:
+        code, message = exits.INTERRUPTED, "utak: interrupted"
+    if message:
+        print(message, file=sys.stderr)
     return code
 
 
 def _parse_and_execute(arguments: Sequence[str] | None) -> int:
-    """Parse the command line, run the subcommand and return its exit code."""
+    from importlib import import_module
+
     from utak.simulator.cli.parsing import build_parser
     from utak.simulator.terminal import exits
+    from utak.simulator.terminal.outcome import UsageError
 
     try:
         options = build_parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said what is wrong, or has printed the help
         return stop.code if isinstance(stop.code, int) else exits.USAGE
-    code: int = options.execute(options)
+    try:
+        code: int = import_module(f"utak.simulator.cli.commands.{options.command.module}").execute(options)
+        sys.stdout.flush()
+    except UsageError as wrong:
+        print(f"utak {options.command.name}: {wrong}", file=sys.stderr)
+        return exits.USAGE
     return code
-
-
-def _print_error(code: int, message: str) -> int:
-    """Print a message on the standard error and return the exit code."""
-    print(message, file=sys.stderr)
-    return code
-
-
-def _final_code(code: int, lost: str) -> int:
-    """Return the exit code, or that for lost output when a message could not be printed."""
-    from utak.simulator.terminal import exits
-
-    return exits.LOST_OUTPUT if lost and code == exits.SUCCESS else code

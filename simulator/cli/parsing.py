@@ -8,27 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 from utak.kb.language.diagnostics import did_you_mean
-from utak.simulator.cli.commands import explain, plan, query, repl, replay, routes, run, schema, sweep, test, warm
-from utak.simulator.cli.commands.files import check, import_scenario, new, show
+from utak.simulator.cli.table import SUBCOMMANDS
 
-# In the order of the help text.
-COMMANDS = (
-    run,
-    test,
-    sweep,
-    check,
-    show,
-    new,
-    import_scenario,
-    query,
-    plan,
-    repl,
-    explain,
-    replay,
-    routes,
-    schema,
-    warm,
-)
 NEGATIVE_POINT = re.compile(r"-[\d.][^,]*,.*")  # a point whose first coordinate has a minus, such as -1,2
 # The end of the help text.
 EXIT_CODES = (
@@ -104,8 +85,12 @@ def build_parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action=VersionAction, nargs=0, help="print the version and exit")
     parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=HintingParser)
-    for command in COMMANDS:
-        command.add(parts)
-    for part in parts.choices.values():
+    for command in SUBCOMMANDS:
+        part = parts.add_parser(
+            command.name, help=command.summary, description=command.description, epilog=command.epilog
+        )
+        for argument in command.arguments:
+            argument.declare(part)
+        part.set_defaults(command=command)
         part.intermixed = True
     return top

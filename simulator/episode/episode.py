@@ -43,7 +43,7 @@ def read_episode(path: Path | str) -> Episode:
     """Return an episode, complete or cut short."""
     name = str(path)
     *lines, rest = _split(path)
-    if _is_object(rest):  # an editor took the last line end away
+    if _object_in(rest):  # an editor took the last line end away
         lines.append(rest)
     rows = [_decoded(name, number, row) for number, row in enumerate(lines, 1)]
     if not rows or rows[0].get("utak") != "episode":
@@ -77,16 +77,10 @@ def read_begun_episode(path: Path | str) -> Episode:
     return episode
 
 
-def complete_lines(path: Path | str) -> list[bytes]:
-    """Return the lines of an episode with their line ends; a last line without a line end is left out."""
-    # Raises CannotOpenError when the file cannot be read, BadInputError when it is too large.
-    return _split(path)[:-1]
-
-
 def lines_to_resume(path: Path | str) -> list[bytes]:
-    """Return the complete lines of an episode whose run shall go on; raises as above, and when its header is cut."""
+    """Return the complete lines of an episode whose run shall go on; raises when its header is cut."""
     *lines, rest = _split(path)
-    if not lines and rest and not _is_object(rest):
+    if not lines and rest and not _object_in(rest):
         what = "the episode ends within its header, which states the options of the run: it cannot go on"
         raise _damaged(str(path), 1, f"{what}; leave out --resume to begin anew")
     return lines
@@ -101,22 +95,18 @@ def _split(path: Path | str) -> list[bytes]:
     return [*(line + b"\n" for line in lines), rest]
 
 
-def _is_object(raw: bytes) -> bool:
-    """Return whether bytes are a whole JSON object; those of a line that was cut short never are."""
-    try:
-        return isinstance(json.loads(raw), dict)
-    except (ValueError, RecursionError):
-        return False
+def _object_in(raw: bytes) -> EpisodeLine:
+    """Return the JSON object that bytes state; {} when they are none, as those of a line that was cut short."""
+    with suppress(ValueError, RecursionError):
+        value = json.loads(raw)
+        return value if isinstance(value, dict) else {}
+    return {}
 
 
 def without_limit(lines: list[bytes]) -> list[bytes]:
     """Return the lines of an episode without its result, if a limit of time ended the run; then the run can go on."""
-    with suppress(ValueError):
-        last = json.loads(lines[-1]) if len(lines) > 1 else None
-        result = last.get("result") if isinstance(last, dict) else None
-        if isinstance(result, dict) and "seconds" in result:
-            return lines[:-1]
-    return lines
+    result = _object_in(lines[-1]).get("result") if len(lines) > 1 else None
+    return lines[:-1] if isinstance(result, dict) and "seconds" in result else lines
 
 
 class _InvalidJsonError(ValueError):
@@ -168,14 +158,6 @@ def _problem(path: str, span: SourceSpan, what: str) -> Problem:
     return Source(path, "", lies_outside(path)).problem(span, what)
 
 
-def _was_changed(row: bytes) -> bool:
-    """Return whether a header states changes of the run from outside (simulator.run.changes)."""
-    with suppress(ValueError):
-        head = json.loads(row)
-        return isinstance(head, dict) and bool(head.get("changes"))
-    return False
-
-
 def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> Problem:
     """Return the problem of a value, placed at the key that leads to it."""
     at = _column(raw.decode("utf-8"), where)
@@ -200,9 +182,9 @@ class EpisodeLog:
         path: Path | str | None,
         resume: bool = False,
         force: bool = False,
-        listen: Callable[[EpisodeLine], None] = lambda line: None,
+        listeners: Sequence[Callable[[EpisodeLine], None]] = (),
     ) -> None:
-        self._path, self._listen = path, listen
+        self._path, self._listeners = path, listeners
         self._number = 0
         self._recorded: Sequence[bytes] = ()
         self._stream: GrowingFile | None = None
@@ -239,11 +221,12 @@ class EpisodeLog:
         if self._number <= len(self._recorded):
             if text.encode("ascii") != self._recorded[self._number - 1]:
                 what = "the run does not repeat this line: another scenario, other options or another version of utak"
-                if self._number == 1 and _was_changed(self._recorded[0]):
+                if self._number == 1 and _object_in(self._recorded[0]).get("changes"):
                     what = "this run was changed at the prompt, so `utak run` cannot repeat it: `utak repl` can"
                 raise _damaged(str(self._path), self._number, what)
         elif self._stream is not None:
             self._stream.write(text.encode("ascii"))
         elif self._path == STANDARD_OUTPUT:
             print(text, end="", flush=True)
-        self._listen(line)
+        for listen in self._listeners:
+            listen(line)

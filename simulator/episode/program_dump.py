@@ -9,11 +9,10 @@ Nothing is left out of an encoding; negated atoms with an anonymous variable are
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.reasoning.encodings import encoding_path, encoding_text
@@ -100,15 +99,15 @@ class ProgramDump:
 
     def _rule_files(self, step: int) -> list[str]:
         """Return the files of rules that the run had at a step; raise BadInputError when one is missing."""
-        sums = rules_at(self._head, step)
+        stages = [entry for entry in self._head.get("forked", ()) if entry["until"] > step]
+        sums: list[str] = (stages[0] if stages else self._head)["options"]["kb"]
         missing = [one for one in sums if one not in self._sums]
         if missing:
             what = f"the run had a file of rules that is not given, with the SHA-256 sum {missing[0][:80]}"
-            raise BadInputError([Problem(self._name, SourceSpan(1, 1, 1), what, hint="give it with --kb")])
+            raise BadInputError.at(self._name, what, "give it with --kb")
         return [self._sums[one] for one in sums]
 
     def _append(self, name: str, text: str) -> None:
-        """Append a text to a file of the folder."""
         try:
             with (self._folder / name).open("a", encoding="utf-8", newline="\n") as stream:
                 stream.write(text)
@@ -116,15 +115,7 @@ class ProgramDump:
             raise CannotOpenError(str(self._folder / name), error.strerror or str(error)) from None
 
     def _damaged(self, step: int, what: str) -> BadInputError:
-        """Return the error `what` about the decisions of a step."""
-        return BadInputError([Problem(self._name, SourceSpan(step + 2, 1, 1), f"{what}: the episode is damaged")])
-
-
-def rules_at(head: Mapping[str, Any], step: int) -> list[str]:
-    """Return the SHA-256 sums of the files of rules that a run had at a step, by its header."""
-    stages = [entry for entry in head.get("forked", ()) if entry["until"] > step]
-    sums: list[str] = (stages[0] if stages else head)["options"]["kb"]
-    return sums
+        return BadInputError.at(self._name, f"{what}: the episode is damaged", line=step + 2)
 
 
 def without_anonymous_negation(text: str) -> str:
@@ -150,7 +141,6 @@ def without_anonymous_negation(text: str) -> str:
 
 
 def _atom(name: str, arguments: Sequence[str]) -> str:
-    """Return an atom as text."""
     return f"{name}({', '.join(arguments)})" if arguments else name
 
 

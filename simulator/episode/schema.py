@@ -10,6 +10,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from utak.geometry.counts.retina import FIELD_COUNT
+
 Schema = dict[str, Any]
 KeyPath = tuple[str, ...]  # the keys that lead to a value
 LineComplaint = tuple[KeyPath, str]  # the place of a value, and what is wrong with it
@@ -31,7 +33,15 @@ _TYPES: dict[str, tuple[Any, str]] = {
 @cache
 def definitions() -> dict[str, Schema]:
     """Return the schema of each form by its name."""
-    found: dict[str, Schema] = json.loads((files(__package__) / "schema.json").read_text(encoding="utf-8"))["$defs"]
+    text = (files(__package__) / "schema.json").read_text(encoding="utf-8")
+    found: dict[str, Schema] = json.loads(text)["$defs"]
+    belief = found["belief"]["properties"]
+    # What depends on the number of fields of the retina; the file states it for 160.
+    found["step"]["properties"]["retina"] |= {"minItems": FIELD_COUNT, "maxItems": FIELD_COUNT}
+    found["field_number"]["maximum"] = FIELD_COUNT - 1
+    belief["cells"]["additionalProperties"]["maximum"] = FIELD_COUNT
+    for schema in (found["digits"], belief["status"]):
+        schema |= {key: schema[key].replace("160", str(FIELD_COUNT)) for key in ("title", "pattern")}
     return found
 
 

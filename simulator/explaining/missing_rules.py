@@ -1,6 +1,7 @@
 """Rules that took part in a run and are not given where it is explained: an explanation says that it lacks them."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from utak.simulator.episode.episode import EpisodeLine
 from utak.simulator.episode.record import rule_sums
@@ -8,12 +9,16 @@ from utak.simulator.episode.record import rule_sums
 SHOWN_SUM_DIGITS = 8  # hexadecimal digits by which a message names a file of rules; a convention
 
 
+def rule_paths(files: Iterable[Path | str]) -> list[str]:
+    """Return the absolute paths of files with users' rules, as text."""
+    return [str(Path(file).absolute()) for file in files]
+
+
 def missing_rules(header: EpisodeLine, rule_files: Sequence[str]) -> str:
     """Return in a line that rules of a run are not given; "" when all are."""
-    sums = dict.fromkeys(_sums(header))
-    if not sums:
-        return ""
-    given = set(rule_sums(tuple(rule_files)))
+    stages = (*header.get("forked", ()), header)
+    sums = dict.fromkeys(one for stage in stages for one in stage.get("options", {}).get("kb", ()))
+    given = set(rule_sums(tuple(rule_files))) if sums else set()
     missing = [one for one in sums if one not in given]
     if not missing:
         return ""
@@ -21,12 +26,6 @@ def missing_rules(header: EpisodeLine, rule_files: Sequence[str]) -> str:
     what = f"{count} took part in this run, and {_number(len(missing), len(sums))} not given here"
     named = ", ".join(one[:SHOWN_SUM_DIGITS] for one in missing)
     return f"{what} (SHA-256 {named}): what {'it' if len(missing) == 1 else 'they'} brought about is not explained"
-
-
-def _sums(header: EpisodeLine) -> Iterable[str]:
-    """Yield the sums of the rules of all stages of a run, in order."""
-    for stage in (*header.get("forked", ()), header):
-        yield from stage.get("options", {}).get("kb", ())
 
 
 def _number(missing: int, count: int) -> str:

@@ -2,10 +2,9 @@
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 
 from shapely.errors import ShapelyError
 
@@ -25,7 +24,7 @@ from utak.kb.evidence.record import MissingRecordError, Record
 from utak.kb.explanation.belief import certain_atoms
 from utak.kb.explanation.programs import ExplanationError
 from utak.kb.language.atoms import atom_parts
-from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from utak.kb.language.diagnostics import BadInputError, Problem
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.simulator.episode.episode import Episode, EpisodeLine
@@ -76,38 +75,38 @@ class Questions:
 
     def why(self, fact: str, step: int | None = None) -> Reason:
         """Return the reason why a fact is believed, or why a goal or a verdict stands as it does."""
-        at = self._checked(step)
-        wanted = _one_fact(fact)
-        name, _ = atom_parts(wanted)
+        at, wanted = self._checked(step), _one_fact(fact)
         with _refusing_damage(fact):
-            if name == "verdict":
+            if atom_parts(wanted)[0] == "verdict":
                 return self._why_verdict(wanted)
-            plain = plain_fact(wanted)
-            goal = next((goal for goal in self._task_at(at).goals if plain_fact(goal) == plain), None)
-            if goal is not None and plain not in self.beliefs.record.steps[at].fact_set:
+            if goal := self._goal_asked(wanted, at):
                 return explain_goal(self.beliefs, goal, at)
-            if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
-                return self._why_derived(plain, at)
+            if _is_derived(wanted):
+                return self._why_derived(plain_fact(wanted), at)
             found, *others = self._instances(wanted, at)
             return _one_of(self.beliefs.explain(found, at), 1 + len(others))
 
     def why_not(self, fact: str, step: int | None = None) -> Reason:
         """Return why a fact is not believed: the smallest set of facts that is missing or in the way."""
-        at = self._checked(step)
-        wanted = _one_fact(fact)
+        at, wanted = self._checked(step), _one_fact(fact)
         with _refusing_damage(fact):
             if atom_parts(wanted)[0] == "verdict":
-                return self._why_not_verdict(wanted)
-            goal = next((goal for goal in self._task_at(at).goals if plain_fact(goal) == plain_fact(wanted)), None)
-            if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
+                return self._why_not_verdict(wanted, at)
+            if goal := self._goal_asked(wanted, at):
                 return self._why_not_goal(goal, at)
-            signature = atom_parts(wanted)[0], len(atom_parts(wanted)[1])
-            if (signature not in BELIEF_PREDICATES or signature[0] == "object") and _has_variables(wanted):
+            if _is_derived(wanted) and _has_variables(wanted):
                 raise _problem(fact, "one atom at a time: give values in the place of variables")
             believed = self._instances(wanted, at)[0]
             if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
             return self._absences.explain(wanted, at)
+
+    def _goal_asked(self, wanted: str, step: int) -> str:
+        """Return the goal that a fact states, unless it is believed as a fact; "" for none."""
+        plain = plain_fact(wanted)
+        if plain in self.beliefs.record.steps[step].fact_set:
+            return ""
+        return next((goal for goal in self._task_at(step).goals if plain_fact(goal) == plain), "")
 
     def _task_at(self, step: int) -> RecordedTask:
         """Return the task that counts at a step: goals may be others after a fork or a change at the prompt."""
@@ -129,18 +128,17 @@ class Questions:
         found = explain_goal(self.beliefs, goal, step)
         return Reason(f"not {goal}", because, ReasonKind.NEGATION, f"step {step}", (found,))
 
-    def _why_not_verdict(self, wanted: str) -> Reason:
-        """Return why the verdict is another one, or why there is none."""
-        found = explain_verdict(self.beliefs, self._task_at(self.last_step))
+    def _why_not_verdict(self, wanted: str, step: int) -> Reason:
+        """Return why the verdict is another one, or why there is none at a step."""
+        last, task = self.last_step, self._task_at(self.last_step)
+        found = explain_verdict(self.beliefs, task)
         if found is None:
-            below = tuple(
-                explain_goal(self.beliefs, goal, self.last_step) for goal in self._task_at(self.last_step).goals
-            )
-            because = NO_VERDICT
-            return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {self.last_step}", below)
-        if _fits(wanted, found.claim):
+            below = tuple(explain_goal(self.beliefs, goal, last) for goal in task.goals)
+            return Reason(f"not {wanted}", NO_VERDICT, ReasonKind.NEGATION, f"step {last}", below)
+        if step == last and _fits(wanted, found.claim):
             raise _problem(wanted, f"this is the verdict: {found.claim}; why tells the reason")
-        return Reason(f"not {wanted}", f"the verdict is {found.claim}", ReasonKind.NEGATION, found.source, (found,))
+        given = f"the verdict is {found.claim}" + (f", and is given at step {last} alone" if step < last else "")
+        return Reason(f"not {wanted}", given, ReasonKind.NEGATION, found.source, (found,))
 
     def why_cell(self, cell: int, step: int | None = None) -> Reason:
         """Return what a cell of the impression of a step (None for the last one) is laid to; cells count from 0."""
@@ -199,11 +197,6 @@ class Questions:
         return step
 
 
-def rule_paths(files: Iterable[Path | str]) -> list[str]:
-    """Return the absolute paths of files with users' rules, as text."""
-    return [str(Path(file).absolute()) for file in files]
-
-
 def questions_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> Questions:
     """Return the questions about an episode that was read; rule_files : the files with users' rules of its run."""
     return Questions(episode.header, episode.steps, episode.result, rule_files)
@@ -236,8 +229,13 @@ def _fits(wanted: str, fact: str) -> bool:
     return True
 
 
+def _is_derived(atom: str) -> bool:
+    """Return whether an atom is no fact of the world model by itself: users' rules define it, or it is `object(N)`."""
+    name, arguments = atom_parts(atom)
+    return (name, len(arguments)) not in BELIEF_PREDICATES or name == "object"
+
+
 def _has_variables(atom: str) -> bool:
-    """Return whether an argument of an atom stands for anything."""
     return any(QUESTION_VARIABLE.fullmatch(argument) for argument in atom_parts(atom)[1])
 
 
@@ -283,6 +281,5 @@ def _one_fact(text: str) -> str:
 
 
 def _problem(text: str, what: str) -> BadInputError:
-    """Return the error `what` about a question."""
     line = text.split("\n")[0][:200]
-    return BadInputError([Problem("why", SourceSpan(1, 1, max(1, len(line))), what, line)])
+    return BadInputError.about("why", line, what)

@@ -1,6 +1,6 @@
 """Trees of reasons for the steps of a whole episode, cut to what a page can hold."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from utak.kb.evidence.reason import Reason, ReasonKind
@@ -31,13 +31,8 @@ def trees_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> dict[i
 
 
 def _entry(reason: Reason, levels: int) -> TreeEntry:
-    """Return the first levels of a tree as JSON values."""
     text = ": ".join(part for part in (reason.claim, reason.because) if part)
     entry: TreeEntry = {"text": text[:MAX_SENTENCE_CHARACTERS]}
-    below = [_entry(one, levels - 1) for one in _told(reason)] if levels > 1 else []
+    told = [one for one in reason.rests_on if one.kind != ReasonKind.COMPUTED and levels > 1]
+    below = [_entry(one, levels - 1) for one in told]
     return entry | {"children": below} if below else entry
-
-
-def _told(reason: Reason) -> Iterator[Reason]:
-    """Yield what a reason rests on, without what only computes."""
-    return (one for one in reason.rests_on if one.kind != ReasonKind.COMPUTED)

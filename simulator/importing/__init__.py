@@ -8,11 +8,10 @@ raster          worlds of cells: walls, objects and the robot as a picture or as
 pushworld       PushWorld puzzles, .pwp
 sokoban         Sokoban levels, .xsb
 movingai_map    Moving AI maps, .map
-pgm             grey images, .pgm
-ros_yaml        the head of a ROS map, .yaml
-ros_map         ROS maps, .yaml with .pgm
+ros_head        the head of a ROS map, .yaml
+ros_map         ROS maps, .yaml with an image
 xml_tree        XML with places, without entities
-svg_path        outlines in SVG
+svg_outlines    outlines that SVG draws
 namosim         NAMOSIM scenarios, .svg
 
 Public names: `Imported`, `ImportOptions`, and `read` of each format.

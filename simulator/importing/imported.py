@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import numpy as np
 import shapely
 
 # Squares by which a thing may end beside its goal in expect.lp. A `pose` holds within a quarter of a square
@@ -44,15 +45,22 @@ class Imported:
     notes: tuple[str, ...] = ()  # what the scenario does not say as the source does, a sentence each
 
 
+class DrawnObject(NamedTuple):
+    """A movable object of a scenario's world."""
+
+    name: str
+    colour: str
+    outline: Any  # shapely Polygon, where it lies at first; squares, table frame
+    # Whether it alone has its colour. Else nothing tells it from the others, and expect.lp leaves it out.
+    unique: bool = True
+
+
 class ObjectGoal(NamedTuple):
     """An object that shall be brought elsewhere."""
 
-    name: str  # its name in the world
-    colour: str  # its colour
-    outline: Any  # shapely Polygon, where it lies at first; squares, table frame
+    parameter: str  # the parameter of the task that means it
+    thing: DrawnObject
     shift: tuple[float, float]  # how far it shall be brought (x, y), in squares of the table
-    # Whether it alone has its colour. Else nothing tells it from the others, and expect.lp leaves it out.
-    unique: bool = True
 
 
 class TaskFacts(NamedTuple):
@@ -63,20 +71,17 @@ class TaskFacts(NamedTuple):
     expect: tuple[str, ...]
 
 
-def task_of_objects(goals: Iterable[tuple[str, ObjectGoal]], utak: tuple[float, float]) -> TaskFacts:
+def task_of_objects(goals: Iterable[ObjectGoal], utak: tuple[float, float]) -> TaskFacts:
     """Return the facts of a task that brings objects to places, unturned."""
     start, goal, expect = [], [], []
-    for parameter, one in goals:
-        east, north = (
-            middle + shift - origin
-            for middle, shift, origin in zip(one.outline.centroid.coords[0], one.shift, utak, strict=True)
-        )
-        start.append(f"object({parameter}). colour({parameter}, {one.colour}).")
-        goal.append(f'pose({parameter}, "POINT ({decimal(east)} {decimal(north)})", 0).')
-        if one.unique:
-            there = shapely.transform(one.outline, lambda points, shift=one.shift: points + shift)
+    for parameter, thing, shift in goals:
+        there = shapely.transform(thing.outline, lambda points, shift=shift: points + shift)
+        east, north = (decimal(value) for value in there.centroid.coords[0] - np.array(utak))
+        start.append(f"object({parameter}). colour({parameter}, {thing.colour}).")
+        goal.append(f'pose({parameter}, "POINT ({east} {north})", 0).')
+        if thing.unique:
             region = there.buffer(GOAL_MARGIN, join_style="mitre")
-            expect.append(f'inside({one.name}, "{region_text(region)}").')
+            expect.append(f'inside({thing.name}, "{region_text(region)}").')
     return TaskFacts(tuple(start), tuple(goal), tuple(expect))
 
 
@@ -89,7 +94,7 @@ def decimal(value: float) -> str:
     return f"{round(value, 4) + 0.0:.4f}".rstrip("0").rstrip(".")
 
 
-def region_text(region: Any) -> str:
-    """Return a shapely geometry as well-known text with at most six decimals, in squares."""
-    text: str = shapely.to_wkt(region, rounding_precision=6, trim=True)
+def region_text(region: Any, decimals: int = 6) -> str:
+    """Return a shapely geometry as well-known text with at most so many decimals, in squares."""
+    text: str = shapely.to_wkt(region, rounding_precision=decimals, trim=True)
     return text

@@ -15,19 +15,14 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
 from utak.kb.language.source_text import MAX_FILE_BYTES, Source
 from utak.simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
-from utak.simulator.importing.raster import (
-    CellWorld,
-    RasterCell,
-    RasterError,
-    connected_parts,
-    encloses_something,
-    world_text,
-)
+from utak.simulator.importing.raster import CellWorld, RasterCell, RasterError, world_text
 from utak.simulator.importing.text_file import read_raw, text_source
+from utak.simulator.scenario.picture import outline_of_cells
 
 SQUARES_A_CELL = 3  # squares a cell: the robot sees an object of one cell as a square of 3 x 3; a convention
 BORDER_SQUARES = 1  # the walls that a puzzle has around it without naming them
@@ -61,18 +56,16 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     goals, notes = [], []
     for goal in sorted((part for part in places if part[0] == "g"), key=_natural):
         index = movable.index(f"m{goal[1:]}")
-        (east, north), same_form = _shift(places[movable[index]], places[goal])
-        if not same_form:
+        cells, there = places[movable[index]], places[goal]
+        east = min(i for i, _ in there) - min(i for i, _ in cells)
+        north = max(j for _, j in there) - max(j for _, j in cells)
+        if {(i + east, j + north) for i, j in cells} != set(there):
             notes.append(
                 f"Goal {goal.upper()} has another form than {movable[index].upper()}: their west and north edges meet."
             )
-        colour = drawn.colours[index]
-        shift = (float(east * scale), float(north * scale))
-        unique = drawn.unique(index)
-        goals.append(
-            (f"x{goal[1:]}", ObjectGoal(drawn.names[index], colour, drawn.outlines[index], shift, unique)),
-        )
-        if not unique:
+        thing = drawn.objects[index]
+        goals.append(ObjectGoal(f"x{goal[1:]}", thing, (float(east * scale), float(north * scale))))
+        if not thing.unique:
             notes.append(f"There are more objects than colours: nothing tells {movable[index].upper()} from another.")
     task = task_of_objects(goals, drawn.utak)
     return Imported("PushWorld puzzle", drawn.file, drawn.text, *task, tuple(notes))
@@ -139,10 +132,11 @@ def _problems(source: Source, places: PuzzlePlaces) -> "list[Problem]":
         if part[0] != "m":
             continue
         first = min(cells.values())
-        if connected_parts(frozenset(cells)) > 1:
+        outline = outline_of_cells(cells)
+        if shapely.get_num_geometries(outline) > 1:
             what = f"{part.upper()} is in several parts, or hangs together by corners alone"
             problems.append(source.problem(first, what, "an object of TABLETOP is one polygon"))
-        elif encloses_something(frozenset(cells)):
+        elif outline.interiors:
             what = f"{part.upper()} encloses a cell: an object that can be moved has no holes"
             problems.append(source.problem(first, what))
     if not problems and not any(part[0] == "g" for part in places):
@@ -153,10 +147,3 @@ def _problems(source: Source, places: PuzzlePlaces) -> "list[Problem]":
 def _natural(part: str) -> tuple[int, int | str]:
     """Return the key that sorts parts with numbers by their number, before the others by their text."""
     return (0, int(part[1:])) if part[1:].isdecimal() and len(part) < 10 else (1, part)
-
-
-def _shift(cells: dict[RasterCell, SourceSpan], goal: dict[RasterCell, SourceSpan]) -> tuple[tuple[int, int], bool]:
-    """Return how far an object is from its goal (east, north), in cells, and whether both have the same form."""
-    east = min(i for i, _ in goal) - min(i for i, _ in cells)
-    north = max(j for _, j in goal) - max(j for _, j in cells)
-    return (east, north), {(i + east, j + north) for i, j in cells} == set(goal)

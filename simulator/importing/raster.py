@@ -4,10 +4,9 @@ Cells are (column, row), row 0 in the south.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import shapely
@@ -16,8 +15,8 @@ from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
-from utak.simulator.importing.imported import COLOUR_LETTERS, MAX_CELL_SCALE, region_text
-from utak.simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
+from utak.simulator.importing.imported import COLOUR_LETTERS, MAX_CELL_SCALE, DrawnObject, region_text
+from utak.simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK, outline_of_cells
 from utak.simulator.world.world import VERGE_COLOUR
 
 RasterCell = tuple[int, int]  # (column, row), row 0 in the south
@@ -43,14 +42,8 @@ class WorldText:
 
     file: str  # its name, world.txt or world.lp.
     text: str  # its text
-    names: tuple[str, ...]  # the name and the colour of each object, in the order of the objects
-    colours: tuple[str, ...]
-    outlines: tuple[Any, ...]  # their outlines, shapely Polygons, squares, table frame
+    objects: tuple[DrawnObject, ...]  # in the order of those of the world of cells
     utak: tuple[float, float]  # where the robot wakes (x, y), squares, table frame
-
-    def unique(self, index: int) -> bool:
-        """Return whether an object alone has its colour. index : its index in `names`."""
-        return self.colours.count(self.colours[index]) == 1
 
 
 def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
@@ -62,14 +55,15 @@ def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
     column, row = world.robot
     utak = (border + column * scale + scale // 2 + 0.5, border + row * scale + scale // 2 + 0.5)
     colours = _colours(world.objects)
-    names = _names(world.objects, colours)
-    outlines = tuple(_outline(cells, scale, border) for cells in world.objects)
+    outlines = (outline_of_cells(cells, scale, border) for cells in world.objects)
+    is_unique = [colours.count(colour) == 1 for colour in colours]
+    drawn = tuple(map(DrawnObject, _names(world.objects, colours), colours, outlines, is_unique))
     if max(walls.shape) > MAX_PICTURE_SIDE:
         corners = count_corners(walls)
         if corners > MAX_OUTLINE_CORNERS:
             what = f"walls with {corners} corners, more than {MAX_OUTLINE_CORNERS}"
             raise RasterError(f"{what}: a table of more than {MAX_PICTURE_SIDE} squares a side needs simpler ones")
-        return WorldText("world.lp", _as_facts(walls, names, colours, outlines, utak), names, colours, outlines, utak)
+        return WorldText("world.lp", _as_facts(walls, drawn, utak), drawn, utak)
     letters = np.where(walls, VERGE_COLOUR, FLOOR_MARK)
     for cells, colour in zip(world.objects, colours, strict=True):
         for i, j in cells:
@@ -77,7 +71,7 @@ def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
             letters[south : south + scale, west : west + scale] = colour
     letters[int(utak[1]), int(utak[0])] = UTAK_MARK
     text = "".join("".join(letters_of_row) + "\n" for letters_of_row in letters[::-1].tolist())
-    return WorldText("world.txt", text, names, colours, outlines, utak)
+    return WorldText("world.txt", text, drawn, utak)
 
 
 def check_size(shape: tuple[int, ...], scale: Fraction, border: int = 0) -> None:
@@ -120,32 +114,6 @@ def roomy_place(walls: Bools) -> RasterCell | None:
     return int(columns[first]), int(rows[first])
 
 
-def connected_parts(cells: frozenset[RasterCell]) -> int:
-    """Return the number of edge-connected parts of a set of cells."""
-    left, parts = set(cells), 0
-    while left:
-        parts += 1
-        waiting = [left.pop()]
-        while waiting:
-            i, j = waiting.pop()
-            for other in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-                if other in left:
-                    left.remove(other)
-                    waiting.append(other)
-    return parts
-
-
-def encloses_something(cells: frozenset[RasterCell]) -> bool:
-    """Return whether the outline of a set of edge-connected cells has a hole."""
-    return bool(_outline(cells, 1, 0).interiors)
-
-
-def _outline(cells: frozenset[RasterCell], scale: int, border: int) -> Any:
-    """Return the outline of edge-connected cells, a shapely Polygon in squares."""
-    corners = np.array(sorted(cells), float) * scale + border
-    return shapely.normalize(shapely.coverage_union_all(shapely.box(*corners.T, *(corners + scale).T)).simplify(0))
-
-
 def _colours(objects: Sequence[frozenset[RasterCell]]) -> tuple[str, ...]:
     """Return the colour of each object: the letters in turn, and then the least used that no neighbour has."""
     owner = {cell: number for number, cells in enumerate(objects) for cell in cells}
@@ -174,15 +142,11 @@ def _names(objects: Sequence[frozenset[RasterCell]], colours: Sequence[str]) -> 
     return tuple(names)
 
 
-def _as_facts(
-    walls: Bools, names: Sequence[str], colours: Sequence[str], outlines: Sequence[Any], utak: tuple[float, float]
-) -> str:
+def _as_facts(walls: Bools, objects: Iterable[DrawnObject], utak: tuple[float, float]) -> str:
     """Return the text of world.lp. walls : (rows, columns) bool in squares, row 0 in the south."""
-    facts = [f"table({walls.shape[1]}, {walls.shape[0]}).", f'verge("{region_text(outline_of_mask(walls))}").']
-    facts += [
-        f'object({name}, {colour}, "{region_text(outline)}").'
-        for name, colour, outline in zip(names, colours, outlines, strict=True)
-    ]
+    verge = region_text(shapely.normalize(mask_to_polygon(walls).simplify(0)))
+    facts = [f"table({walls.shape[1]}, {walls.shape[0]}).", f'verge("{verge}").']
+    facts += [f'object({one.name}, {one.colour}, "{region_text(one.outline)}").' for one in objects]
     return "\n".join([*facts, f'utak("POINT ({utak[0]:g} {utak[1]:g})", 0).', ""])
 
 
@@ -193,8 +157,3 @@ def count_corners(mask: Bools) -> int:
     odd = (a ^ b ^ c ^ d).sum()  # one or three of the four squares about a point
     crossing = ((a == d) & (b == c) & (a != b)).sum()  # two that meet at the point alone: a corner of both
     return int(odd + 2 * crossing)
-
-
-def outline_of_mask(mask: Bools) -> Any:
-    """Return the outline of the True squares of a mask, a shapely Polygon or MultiPolygon."""
-    return shapely.normalize(mask_to_polygon(mask).simplify(0))

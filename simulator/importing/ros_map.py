@@ -1,28 +1,32 @@
-"""ROS maps (.yaml with .pgm) as scenarios: walls and floor, without objects and without a task."""
+"""ROS maps (.yaml with an image) as scenarios: walls and floor, without objects and without a task."""
 
+import io
 import math
+import warnings
 from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
+from PIL import Image
 
 from utak.geometry.kernels.arrays import Bools
-from utak.kb.language.diagnostics import CannotOpenError, SourceSpan
-from utak.kb.language.source_text import MAX_FILE_BYTES, Source, lies_outside
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.language.source_text import Source, lies_outside
 from utak.simulator.importing.imported import Imported, ImportOptions
 from utak.simulator.importing.movingai_map import scenario_of_walls
-from utak.simulator.importing.pgm import GreyImage, parse_pgm
-from utak.simulator.importing.ros_yaml import MapHead, parse_head
+from utak.simulator.importing.ros_head import MAX_HEAD_BYTES, MapHead, parse_head
 from utak.simulator.importing.text_file import read_raw, text_source
 
-MAX_PGM_BYTES = 100_000_000  # bytes of an image; a convention
+IMAGE_FORMATS = ("PPM", "PNG", "BMP")  # as Pillow calls them; PPM is .pgm, too
+MAX_IMAGE_BYTES = 40_000_000  # bytes of an image; a convention
+MAX_IMAGE_PIXELS = 1 << 25  # pixels of an image that is read: 8192 x 4096; a convention
+MAX_TEXT_IMAGE_BYTES = 8_000_000  # bytes of an image with numbers as text, seconds of reading; a convention
 DEFAULT_SQUARE_METRES = (
     0.1  # metres a square: as in floor plans of 10 squares a metre, doors have 8 to 10; a convention
 )
-MAX_RAW_OCCUPANCY = 100  # by the format: greater values of `raw` say nothing
-# What an image without .yaml is taken for: the values that the map savers of ROS write.
-DEFAULT_HEAD = MapHead("", SourceSpan(1, 1, 1), 0.05, (0.0, 0.0, 0.0), False, 0.65, 0.196, "trinary")
+MAX_RAW_OCCUPANCY = 100 / 255  # by the format: greater shares of `raw` say nothing
 
 
 class Occupancy(NamedTuple):
@@ -36,16 +40,19 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     """Return the scenario of a ROS map."""
     path = Path(path)
     notes: tuple[str, ...] = ()
-    if path.suffix.lower() == ".pgm":
+    if path.suffix.lower() not in (".yaml", ".yml"):
         beside = next((path.with_suffix(end) for end in (".yaml", ".yml") if path.with_suffix(end).exists()), None)
-        head = DEFAULT_HEAD if beside is None else _head(beside, options)
+        head = MapHead() if beside is None else _head(beside, options)
         if beside is None:
             notes = ("Without a .yaml the map is taken to have 0.05 metres a pixel, and thresholds 0.65 and 0.196.",)
-        source = text_source(path, read_raw(path, MAX_PGM_BYTES, "an image", options.untrusted))
+        image = path
     else:
         head = _head(path, options)
-        source = _image(path, head, options)
-    occupancy = occupancy_of(parse_pgm(source), head)
+        image = path.parent / head.image
+        if options.untrusted and lies_outside(image, path.parent):
+            raise CannotOpenError(str(image), f"{path} names an image out of its folder, which --untrusted refuses")
+    source = Source(str(image), "")
+    occupancy = occupancy_of(grey_image(source, read_raw(image, MAX_IMAGE_BYTES, "an image", options.untrusted)), head)
     walls = occupancy.occupied | (~occupancy.free & (not options.unknown_is_floor))
     unknown = int((~occupancy.occupied & ~occupancy.free).sum())
     if unknown:
@@ -59,27 +66,49 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
 
 def _head(path: Path, options: ImportOptions) -> MapHead:
     """Return the head in a .yaml file."""
-    return parse_head(text_source(path, read_raw(path, MAX_FILE_BYTES, "the head of a ROS map", options.untrusted)))
+    return parse_head(text_source(path, read_raw(path, MAX_HEAD_BYTES, "the head of a ROS map", options.untrusted)))
 
 
-def _image(path: Path, head: MapHead, options: ImportOptions) -> Source:
-    """Return the image that a head names, relative to its own folder."""
-    image = path.parent / head.image
-    if options.untrusted and lies_outside(image, path.parent):
-        raise CannotOpenError(str(image), f"{path} names an image out of its folder, which --untrusted refuses")
-    return text_source(image, read_raw(image, MAX_PGM_BYTES, "an image", options.untrusted), path.parent)
+class GreyImage(NamedTuple):
+    """A grey image."""
+
+    values: npt.NDArray[np.int32]  # (rows, columns) int32, row 0 in the SOUTH
+    greatest: int  # the greatest value that a pixel may have
+
+
+def grey_image(source: Source, raw: bytes) -> GreyImage:
+    """Return the image in the bytes of a file; colours count by the mean of red, green and blue, as in ROS."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of large images, which are refused here
+            image = Image.open(io.BytesIO(raw), formats=IMAGE_FORMATS)
+            pixels = image.width * image.height
+            problem = f"an image of {pixels} pixels, more than {MAX_IMAGE_PIXELS}" if pixels > MAX_IMAGE_PIXELS else ""
+            if raw[:2] in (b"P1", b"P2", b"P3") and len(raw) > MAX_TEXT_IMAGE_BYTES:
+                problem = f"an image as text of more than {MAX_TEXT_IMAGE_BYTES} bytes"
+            if not problem:
+                deep = image.mode.startswith("I")
+                if image.has_transparency_data and image.convert("RGBA").getchannel(3).getextrema() != (255, 255):
+                    problem = "the image is transparent in places: save it without transparency"
+                values = np.asarray(image if deep else image.convert("RGB"))
+    except (OSError, ValueError, SyntaxError, ArithmeticError, Image.DecompressionBombError) as error:
+        problem = f"the image cannot be read: {str(error).partition('<')[0][:80]}"
+    if problem:
+        raise BadInputError([source.problem(source.start(), problem, "ROS maps are .pgm, .png or .bmp images")])
+    values = values.astype(np.int32) if deep else values.sum(axis=2, dtype=np.int32)
+    return GreyImage(np.ascontiguousarray(values[::-1]), 65535 if deep else 3 * 255)
 
 
 def occupancy_of(image: GreyImage, head: MapHead) -> Occupancy:
     """Return which pixels are occupied and which are free."""
-    known = np.arange(image.greatest + 1)  # each value that a pixel may have
+    share = np.arange(image.greatest + 1) / image.greatest  # of each value that a pixel may have
+    occupied = share if head.negate else np.arange(image.greatest, -1, -1) / image.greatest
+    known = np.ones(len(share), bool)
     if head.mode == "raw":
-        share = known / MAX_RAW_OCCUPANCY
-        occupied = (share > head.occupied_thresh) & (share <= 1)
-    else:
-        share = (known if head.negate else image.greatest - known) / image.greatest
-        occupied = share > head.occupied_thresh
-    return Occupancy(occupied[image.values], (share < head.free_thresh)[image.values])
+        known, occupied = share <= MAX_RAW_OCCUPANCY, share / MAX_RAW_OCCUPANCY
+    return Occupancy(
+        (known & (occupied > head.occupied_thresh))[image.values], (occupied < head.free_thresh)[image.values]
+    )
 
 
 def _without_margin(walls: Bools) -> tuple[Bools, tuple[float, float]]:

@@ -7,7 +7,6 @@ levels. A row may be run-length encoded: a number repeats the next character or 
 row.
 """
 
-import heapq
 import re
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,8 +15,10 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import components
 from utak.kb.language.diagnostics import BadInputError, SourceSpan
 from utak.kb.language.source_text import MAX_FILE_BYTES, Source
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
@@ -30,6 +31,8 @@ SQUARE_MARKS = "#@+$*. -_"  # the characters of a row
 RUN_MARKS = "0123456789|()"  # the characters of run-length encoding besides
 WALL_FIRST = re.compile(r"[ \t_-]*#")  # the begin of a line that must be a row
 TITLE = re.compile(r"[ \t]*[A-Za-z][\w ]*:")  # the begin of a line about the level, such as `Author: ...`
+# A line between levels: a number, a ruler, or a heading that begins with # and does not end so.
+HEADING = re.compile(r"#?[0-9]+|([*=_.+-])\1{2,}|#+[ \t]*[A-Za-z].*[^#]")
 COMMENT_MARKS = (";", "::", "%", "'", '"')  # the begins of lines that are none
 MAX_RUN_DIGITS = 4  # digits of a number in a run; derived: no row has more cells than `MAX_TABLE_SIDE`
 MAX_GROUP_DEPTH = 8  # brackets within brackets; a convention
@@ -76,7 +79,7 @@ def _scenario(source: Source, level: Level, scale: int, notes: list[str], title:
         sorted(cell for cell, mark in marks.items() if mark in kind) for kind in ("@+", "$*", ".*+")
     )
     _check(source, level, robot, boxes, storages)
-    walls = _walls(marks, robot[0])
+    walls = _walls(marks)
     pairs = _assigned(walls, boxes, storages)
     try:
         drawn = world_text(CellWorld(walls, tuple(frozenset([box]) for box in boxes), robot[0]), scale)
@@ -84,14 +87,12 @@ def _scenario(source: Source, level: Level, scale: int, notes: list[str], title:
         raise BadInputError([source.problem(level.first, str(error))]) from None
     goals = []
     for number, (index, storage) in enumerate(pairs):
-        shift = tuple(
-            float((there - here) * scale) for here, there in zip(boxes[index], storages[storage], strict=True)
-        )
-        named = drawn.names[index], drawn.colours[index], drawn.outlines[index]
-        goals.append((f"x{number}", ObjectGoal(*named, (shift[0], shift[1]), drawn.unique(index))))
+        (i, j), (to_i, to_j) = boxes[index], storages[storage]
+        shift = float((to_i - i) * scale), float((to_j - j) * scale)
+        goals.append(ObjectGoal(f"x{number}", drawn.objects[index], shift))
     notes.append("In Sokoban any box may go to any storage; here each has its own, for goals name objects.")
     notes.append("Sokoban forbids to pull: run it with --no-pull.")
-    if any(not drawn.unique(index) for index, _ in pairs):
+    if any(not goal.thing.unique for goal in goals):
         notes.append("There are more boxes than colours: nothing tells boxes of one colour apart.")
     if len(boxes) > len(storages):
         notes.append(f"{len(boxes) - len(storages)} boxes have no storage, and no goal.")
@@ -121,7 +122,7 @@ def _level_of(source: Source, lines: Sequence[int]) -> Level:
 
 def _is_row(line: str, within: bool) -> bool:
     """Return whether a line is a row of a level. within : whether the line before it is one."""
-    if not line.strip() or line.startswith(COMMENT_MARKS) or TITLE.match(line):
+    if not line.strip() or line.startswith(COMMENT_MARKS) or TITLE.match(line) or HEADING.fullmatch(line.strip()):
         return False
     if all(mark in SQUARE_MARKS + RUN_MARKS for mark in line.rstrip()):
         return within or "#" in line
@@ -207,23 +208,15 @@ def _check(source: Source, level: Level, *found: Sequence[RasterCell]) -> None:
         raise BadInputError(problems)
 
 
-def _walls(marks: Mapping[RasterCell, str], robot: RasterCell) -> Bools:
-    """Return the walls, (rows, columns) bool, row 0 in the south."""
+def _walls(marks: Mapping[RasterCell, str]) -> Bools:
+    """Return the walls, (rows, columns) bool, row 0 in the south: floor that is open and bare, too."""
     columns, rows = (1 + max(cell[axis] for cell in marks) for axis in (0, 1))
-    walls = np.zeros((rows, columns), bool)
-    outside: set[RasterCell] = set()
-    seen: set[RasterCell] = set()
-    for cell, mark in sorted(marks.items()):
-        if mark == "#":
-            walls[cell[1], cell[0]] = True
-        elif cell not in seen and (cell[0] in (0, columns - 1) or cell[1] in (0, rows - 1)):
-            part = _floor_from(cell, marks)
-            seen |= part.keys()
-            if all(marks[other] in " -_" for other in part):
-                outside |= part.keys()
-    for i, j in outside:
-        walls[j, i] = True
-    return walls
+    walls = np.array([[marks[i, j] == "#" for i in range(columns)] for j in range(rows)])
+    labels = components(~walls).labels
+    inside = {int(labels[j, i]) for (i, j), mark in marks.items() if mark not in " -_#"}
+    open_parts = {int(label) for edge in (labels[0], labels[-1], labels[:, 0], labels[:, -1]) for label in edge}
+    outside: Bools = walls | np.isin(labels, sorted(open_parts - inside - {0}))
+    return outside
 
 
 def _floor_from(start: RasterCell, marks: Mapping[RasterCell, str]) -> dict[RasterCell, int]:
@@ -251,40 +244,26 @@ def _assigned(walls: Bools, boxes: Sequence[RasterCell], storages: Sequence[Rast
     return sorted((owned, number) if turned else (number, owned) for number, owned in pairs)
 
 
-def _cheapest_owners(cost: Sequence[Sequence[int]]) -> dict[int, int]:
+def _cheapest_owners(cost: npt.ArrayLike) -> dict[int, int]:
     """Return who owns which column, by column, one for every row, cheapest in sum. cost : rows <= columns."""
-    owner: dict[int, int] = {}
-    row_price, column_price = [0] * len(cost), [0] * len(cost[0])
-    for newcomer in range(len(cost)):
-        best: dict[int, int] = {}
-        before: dict[int, int] = {}  # by column: the row from which it was reached
-        done: dict[int, int] = {}
-        heap: list[tuple[int, int, int]] = []
-        row, way = newcomer, 0
-        while True:
-            for column, price in enumerate(cost[row]):
-                length = way + price - row_price[row] - column_price[column]
-                if column not in done and length < best.get(column, length + 1):
-                    best[column], before[column] = length, row
-                    heapq.heappush(heap, (length, column, row))
-            way, column, _ = heapq.heappop(heap)
-            while column in done:
-                way, column, _ = heapq.heappop(heap)
-            done[column] = way
-            if column not in owner:
-                break
+    # The Hungarian method with prices (Kuhn 1955); row and column 0 stand for none.
+    table = np.pad(np.asarray(cost, float), ((1, 0), (1, 0)))
+    row_price, column_price = np.zeros(len(table)), np.zeros(len(table[0]))
+    owner, before = np.zeros((2, len(table[0])), int)
+    for newcomer in range(1, len(table)):
+        owner[0], column = newcomer, 0
+        best, seen = np.full(len(owner), np.inf), np.zeros(len(owner), bool)
+        while owner[column]:
+            seen[column] = True
             row = owner[column]
-        row_price[newcomer] += way
-        for reached, length in done.items():
-            column_price[reached] -= way - length
-            if reached in owner:
-                row_price[owner[reached]] += way - length
-        while True:
-            row = before[column]
-            previous = next((c for c, r in owner.items() if r == row), None)
-            owner[column] = row
-            if row == newcomer:
-                break
-            assert previous is not None
-            column = previous
-    return owner
+            lengths = np.where(seen, np.inf, table[row] - row_price[row] - column_price)
+            before[lengths < best] = column
+            best = np.minimum(best, lengths)
+            column = int(np.argmin(np.where(seen, np.inf, best)))
+            step = best[column]
+            row_price[owner[seen]] += step
+            column_price[seen] -= step
+            best[~seen] -= step
+        while column:
+            owner[column], column = owner[before[column]], before[column]
+    return {int(column) - 1: int(owner[column]) - 1 for column in np.flatnonzero(owner) if column}

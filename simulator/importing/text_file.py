@@ -18,9 +18,9 @@ def read_raw(path: Path | str, max_bytes: int, what: str, untrusted: bool = Fals
     return raw
 
 
-def text_source(path: Path | str, raw: bytes, folder: Path | None = None) -> Source:
+def text_source(path: Path | str, raw: bytes) -> Source:
     """Return the text of a file's bytes, one letter a byte, so that columns count bytes."""
-    source = Source(str(path), raw.removeprefix(BOM_UTF8).decode("latin-1"), lies_outside(path, folder))
+    source = Source(str(path), raw.removeprefix(BOM_UTF8).decode("latin-1"), lies_outside(path))
     if raw.startswith((BOM_UTF16_BE, BOM_UTF16_LE)):
         raise BadInputError([source.problem(source.start(), "the file is a text in UTF-16", "save it as UTF-8")])
     return source

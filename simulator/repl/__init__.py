@@ -11,9 +11,9 @@ commands    the table of commands, and the small ones
 travelling  step, back, run, goto, diff
 asking      queries, `;`, facts, since
 changing    assume, retract, goal, save
-explaining  why, whynot: a table of functions that explain
+explaining  why, whynot
 picture     the believed map as a picture
 printer      what is printed: tables, pages, colours
 
-Public names: `converse`, `Dialogue`, `EXPLAINERS`, `draw_belief`.
+Public names: `converse`, `Dialogue`, `draw_belief`.
 """

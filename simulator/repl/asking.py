@@ -1,7 +1,7 @@
 """Queries and their rows, a page at a time; `facts`, and `since` when a fact holds."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from utak.kb.reasoning.assumptions import canonical_facts
@@ -13,59 +13,23 @@ ROBOT_NAMES = frozenset({"utak", "org"})  # the robot in questions and in facts
 MAX_ROWS_ASKED = 1_000_000  # rows of an answer that `;` can reach; a convention
 
 
-class Pages:
-    """The rest of an answer, of which a page was printed."""
-
-    def __init__(self, query: str, answer: QueryAnswer) -> None:
-        self._query, self._answer = query, answer
-        self._shown = 0
-
-    def print_next(self, dialogue: Dialogue) -> bool:
-        """Print the next page. Return whether there is more."""
-        rows = self._answer.rows
-        if self._shown >= len(rows) and self._answer.more and len(rows) < MAX_ROWS_ASKED:
-            self._answer = dialogue.ask(self._query, min(MAX_ROWS_ASKED, 4 * len(rows)))
-            rows = self._answer.rows
-        end = len(rows) if dialogue.printer.page_rows is None else self._shown + dialogue.printer.page_rows
-        dialogue.printer.table(self._answer.variables, rows[self._shown : end])
-        self._shown = min(end, len(rows))
-        if self._shown < len(rows):
-            units = units_of(self._answer.variables, self._answer.types)
-            dialogue.printer.note(f"rows 1 to {self._shown} of {len(rows)}: type ; for more. {units}".rstrip())
-            return True
-        if self._answer.more:
-            dialogue.printer.say(f"... and more than these {len(rows)} rows")
-            return len(rows) < MAX_ROWS_ASKED
-        dialogue.printer.note(units_of(self._answer.variables, self._answer.types) or f"{len(rows)} rows")
-        return False
-
-
-class FactPages:
-    """The rest of a list of facts, of which a page was printed."""
-
-    def __init__(self, facts: Sequence[str]) -> None:
-        self._left, self._count = list(facts), len(facts)
-
-    def print_next(self, dialogue: Dialogue) -> bool:
-        """Print the next page. Return whether there is more."""
-        rows = dialogue.printer.page_rows or self._count
-        page, self._left = self._left[:rows], self._left[rows:]
-        dialogue.printer.say("\n".join(page))
-        if self._left:
-            done = self._count - len(self._left)
-            dialogue.printer.note(f"facts 1 to {done} of {self._count}: type ; for more, or a word: facts o1")
-        return bool(self._left)
-
-
 def ask(dialogue: Dialogue, rest: str) -> None:
     """Print the answer to a query: the first page of its rows, or yes, no, don't know."""
     answer = dialogue.ask(rest, MAX_ANSWER_ROWS)
-    if answer.kind != "bindings":
-        style = {"yes": "bold green", "no": "bold red"}.get(answer.kind, "bold yellow")
-        dialogue.printer.strong(answer.kind, style)
-        return
-    pages = Pages(rest, answer)
-    dialogue.rest = pages if pages.print_next(dialogue) else None
+    if answer.kind == "bindings":
+        _turn(dialogue, _row_pages(dialogue, rest, answer))
+    else:
+        dialogue.printer.styled(answer.kind, {"yes": "bold green", "no": "bold red"}.get(answer.kind, "bold yellow"))
+
+
+def facts(dialogue: Dialogue, rest: str) -> None:
+    """Print the facts at this step; with a word, only those that name it."""
+    word = rest.removesuffix(".").strip()
+    found = [fact for fact in dialogue.known_facts() if not word or names_word(fact, word)]
+    if found:
+        _turn(dialogue, _fact_pages(dialogue, found))
+    else:
+        dialogue.printer.say("none")
 
 
 def more(dialogue: Dialogue, rest: str) -> None:
@@ -73,20 +37,44 @@ def more(dialogue: Dialogue, rest: str) -> None:
     pages, dialogue.rest = dialogue.rest, None
     if pages is None:
         dialogue.printer.tell("there are no more rows")
-    elif pages.print_next(dialogue):
-        dialogue.rest = pages
+    else:
+        _turn(dialogue, pages)
 
 
-def facts(dialogue: Dialogue, rest: str) -> None:
-    """Print the facts at this step; with a word, only those that name it."""
-    word = rest.removesuffix(".").strip()
-    known = dialogue.known_facts()
-    found = [fact for fact in known if not word or names_word(fact, word)]
-    if not found:
-        dialogue.printer.say("none")
-        return
-    lines = FactPages(found)
-    dialogue.rest = lines if lines.print_next(dialogue) else None
+def _turn(dialogue: Dialogue, pages: Iterator[bool]) -> None:
+    """Print the next page, and keep those that follow it."""
+    dialogue.rest = pages if next(pages, False) else None
+
+
+def _row_pages(dialogue: Dialogue, query: str, answer: QueryAnswer) -> Iterator[bool]:
+    """Print the rows of an answer; yield after each page that others follow."""
+    printer, shown = dialogue.printer, 0
+    while True:
+        if shown >= len(answer.rows):
+            answer = dialogue.ask(query, min(MAX_ROWS_ASKED, 4 * len(answer.rows)))
+        rows, units = answer.rows, units_of(answer.variables, answer.types)
+        end = len(rows) if printer.page_rows is None else min(shown + printer.page_rows, len(rows))
+        printer.table(answer.variables, rows[shown:end])
+        shown = end
+        if shown < len(rows):
+            printer.note(f"rows 1 to {shown} of {len(rows)}: type ; for more. {units}".rstrip())
+        elif answer.more:
+            printer.say(f"... and more than these {len(rows)} rows")
+        else:
+            printer.note(units or f"{len(rows)} rows")
+        if shown == len(rows) and not (answer.more and len(rows) < MAX_ROWS_ASKED):
+            return
+        yield True
+
+
+def _fact_pages(dialogue: Dialogue, found: Sequence[str]) -> Iterator[bool]:
+    """Print facts; yield after each page that others follow."""
+    size = dialogue.printer.page_rows or len(found)
+    for first in range(0, len(found), size):
+        dialogue.printer.say("\n".join(found[first : first + size]))
+        if first + size < len(found):
+            dialogue.printer.note(f"facts 1 to {first + size} of {len(found)}: type ; for more, or a word: facts o1")
+            yield True
 
 
 def names_word(fact: str, word: str) -> bool:

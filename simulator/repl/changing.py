@@ -4,13 +4,13 @@ import shlex
 from pathlib import Path
 
 from utak.kb.world.stated_plan import stated_plan
-from utak.simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
+from utak.simulator.episode.episode import STANDARD_OUTPUT, EpisodeLine, EpisodeLog
 from utak.simulator.repl.dialogue import Dialogue
 from utak.simulator.repl.travelling import differences
 from utak.simulator.run.changes import RunConditions
-from utak.simulator.run.live_story import LiveStory
+from utak.simulator.run.story import Story
 from utak.simulator.terminal.action_in_words import describe
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.terminal.streams import escape_controls, one_line
 
 MAX_DIFFERENCES_SHOWN = 20  # facts that a change changes, which are printed; a convention
 
@@ -53,7 +53,7 @@ def goal(dialogue: Dialogue, rest: str) -> None:
     plan(dialogue, "")
 
 
-def _change(dialogue: Dialogue, story: LiveStory, kind: str, text: str) -> RunConditions:
+def _change(dialogue: Dialogue, story: Story, kind: str, text: str) -> RunConditions:
     """Change a run; print what is believed otherwise and done otherwise since. Return what counts now."""
     facts, action, before = story.facts, story.next_action, len(story.lines)
     after = story.change(kind, text)
@@ -93,7 +93,7 @@ def plan(dialogue: Dialogue, rest: str) -> None:
     lines += (
         [
             "planned:" if planned.found else "not planned:",
-            *(f"  {escape_controls(one, False)}" for one in planned.lines()),
+            *(f"  {one_line(one)}" for one in planned.lines()),
         ]
         if planned
         else []
@@ -104,19 +104,16 @@ def plan(dialogue: Dialogue, rest: str) -> None:
         lines.append("what is done next is not known: the episode ends here")
     else:
         action, why = coming
-        lines.append(f"next: {'nothing' if action is None else describe(action)}: {escape_controls(why, False)}")
+        lines.append(f"next: {'nothing' if action is None else describe(action)}: {one_line(why)}")
     dialogue.printer.say("\n".join([*lines, *_routes(story.line)]))
 
 
-def _routes(line: dict[str, object]) -> list[str]:
+def _routes(line: EpisodeLine) -> list[str]:
     """Return lines about the routes that were weighed for the next command, where the episode records them."""
-    belief = line.get("belief")
-    routes = belief.get("routes") if isinstance(belief, dict) else None
     told = []
-    for route in routes if isinstance(routes, list) else []:
-        if isinstance(route, dict) and isinstance(route.get("points"), list):
-            points = " ".join(f"({e:g},{n:g})" for e, n in route["points"])
-            told.append(f"{'chosen route' if route.get('chosen') else 'other route'}: {points}")
+    for route in line["belief"].get("routes", ()):
+        points = " ".join(f"({e:g},{n:g})" for e, n in route["points"])
+        told.append(f"{'chosen route' if route['chosen'] else 'other route'}: {points}")
     return told
 
 
@@ -139,4 +136,4 @@ def save(dialogue: Dialogue, rest: str) -> None:
         for line in lines:
             log.write(line)
     changed = "; its header tells of the changes, and only utak repl goes on from it" if story.changes else ""
-    dialogue.printer.tell(f"steps 0 to {story.at} are saved in {escape_controls(path, False)}{changed}")
+    dialogue.printer.tell(f"steps 0 to {story.at} are saved in {one_line(path)}{changed}")

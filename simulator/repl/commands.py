@@ -3,12 +3,11 @@
 from collections.abc import Mapping
 
 from utak.kb.language.diagnostics import did_you_mean
-from utak.simulator.repl import asking, changing, travelling
+from utak.simulator.repl import asking, changing, explaining, travelling
 from utak.simulator.repl.dialogue import QUIT_WORDS, Dialogue, PromptCommand
 from utak.simulator.repl.picture import STYLES, draw_belief
+from utak.simulator.terminal.action_in_words import TRUE_TABLE_NOTICE
 
-# Printed above every picture of the truth.
-TRUE_TABLE_NOTICE = "the true table, which the robot may believe to be otherwise:"
 FRAME_NOTICE = """\
 In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
 north being the way it faced then. Confidences are percent. The robot is called utak or org. A query is answered by a
@@ -34,14 +33,8 @@ def help_(dialogue: Dialogue, rest: str) -> None:
     """Print what there is, or more about one command."""
     name = rest.removesuffix(".").strip()
     usages = {key: (one.usage, one.summary) for key, one in dialogue.commands.items()}
-    usages |= {key: (one.usage, one.summary) for key, one in dialogue.explainers.items()}
-    if name in dialogue.commands:
-        command = dialogue.commands[name]
-        dialogue.printer.say(
-            f"{command.usage}\n{command.summary}" + (f"\n{command.details}" if command.details else "")
-        )
-    elif name in usages:
-        dialogue.printer.say("\n".join(usages[name]))
+    if command := dialogue.commands.get(name):
+        dialogue.printer.say("\n".join(filter(None, (command.usage, command.summary, command.details))))
     elif name in QUIT_WORDS:
         dialogue.printer.say("quit, exit\nleave; so does the end of the input")
     elif name:
@@ -119,4 +112,10 @@ PROMPT_COMMANDS: Mapping[str, PromptCommand] = {
         "that was changed here states the changes; utak run --resume refuses it.",
     ),
     "help": PromptCommand("help [COMMAND]", "this, or more about a command", help_),
+    "why": PromptCommand(
+        "why [short|long] FACT. | step. | cell N.", "why a fact, this step's command, or a cell", explaining.why
+    ),
+    "whynot": PromptCommand(
+        "whynot [short|long] FACT.", "what is missing for a fact, or in the way", explaining.why_not
+    ),
 }

@@ -4,42 +4,36 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from utak.kb.language.arguments import ArgumentType
+from utak.kb.language.arguments import ArgumentType, word_argument
 from utak.kb.language.atoms import atom_parts
+from utak.kb.language.goal_words import CONSTRAINT_GOALS, CORNER_NAMES
 from utak.kb.language.vocabulary import (
     BELIEF_PREDICATES,
-    CIRCUMSTANCES,
-    CONSTRAINT_GOALS,
-    CORNER_NAMES,
     GOAL_CONDITIONS,
     GOAL_VOCABULARY,
-    SEARCH_ENDS,
-    SHAPE_CLASSES,
     START_VOCABULARY,
-    STATED_STEPS,
     Signature,
 )
 from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
 from utak.simulator.repl.statements import FACT_COMMANDS, QUERY_SIGN, is_query
 
 WORD = re.compile(r"[A-Za-z0-9_?-]*\Z")  # the word at the cursor
-# The words of an argument type that has no others, by its name.
+# The words that are offered for an argument type in place of its own, by its name.
 WORDS_OF_TYPE: Mapping[str, tuple[str, ...]] = {
-    "shape": SHAPE_CLASSES,
-    "corner": CORNER_NAMES,
-    "kind": ("utak", "floor", "verge", "object"),
+    "name": ("utak",),
     "thing": ("utak", "floor", "verge"),
-    "walker": ("utak",),
     "corner or name": ("corner(", "start", "utak"),
     "room or name": ("room(next)",),
     "a goal": tuple(f"{name}(" for name in GOAL_CONDITIONS if name not in CONSTRAINT_GOALS),
-    "what is claimed": ("shape(", "colour("),
-    "place": ("corner",),
-    "a goal of the task": tuple(f"{name}(" for name in GOAL_CONDITIONS),
-    "a step of a plan": tuple(f"{name}(" for name in STATED_STEPS),
-    "a circumstance": tuple(f"{name}(" for name in CIRCUMSTANCES),
-    "end of a search": SEARCH_ENDS,
 }
+THING_TYPES = {"thing", "object", "object, door or room", "candidate"}  # types of arguments whose names fit each other
+BELIEF_NAMES = tuple(name for name, _ in BELIEF_PREDICATES)
+GOAL_SLOTS = {**GOAL_VOCABULARY, **START_VOCABULARY}
+PLACE_WORDS = {
+    "corner": CORNER_NAMES,
+    "room": ("next",),
+}  # what may stand in a place of a goal, such as corner(northeast)
+NAME = re.compile(r"[a-z_]\w*")
 WORD_COMMANDS = ("facts", "diff")  # commands that take a word of the facts
 
 
@@ -67,41 +61,42 @@ def _candidates(
 ) -> Iterable[CompletionWord]:
     """Yield what can stand behind a text."""
     if not before.strip():
-        yield from (CompletionWord(name, "command") for name in commands)
+        yield from _all(commands, "command")
         yield CompletionWord(QUERY_SIGN, "asks what is believed")
-        yield from _predicates({name: () for name, _ in BELIEF_PREDICATES})
+        yield from _predicates(BELIEF_NAMES)
         return
     command = before.split(maxsplit=1)[0]
-    atom = _open_atom(before)
-    if atom is not None and not (is_query(before, commands) or command in FACT_COMMANDS):
-        return
-    if atom is not None:
-        name, at = atom
-        for slot in _slots(command, name, at):
-            yield from (CompletionWord(one, slot.name) for one in _words(slot, facts, parameters))
-        return
-    if command == "help":
-        yield from (CompletionWord(name, "command") for name in commands)
+    asks = is_query(before, commands)
+    if (atom := _open_atom(before)) is not None:
+        for slot in _slots(command, *atom) if asks or command in FACT_COMMANDS else ():
+            yield from _all(_words(slot, facts, parameters), slot.name)
+    elif command == "help":
+        yield from _all(commands, "command")
     elif command in WORD_COMMANDS:
-        yield from (CompletionWord(name, "predicate") for name, _ in BELIEF_PREDICATES)
-        yield from (CompletionWord(name, "in the facts") for name in _names(facts))
+        yield from _all(BELIEF_NAMES, "predicate")
+        yield from _all({name for fact in facts for name in NAME.findall(fact.partition("(")[2])}, "in the facts")
     elif command == "goal":
-        yield from _predicates({**GOAL_VOCABULARY, **START_VOCABULARY})
+        yield from _predicates(GOAL_SLOTS)
     elif command in ("why", "whynot"):
-        yield from (CompletionWord(one, "depth") for one in ("short", "mid", "long"))
-        yield from (CompletionWord(one, "") for one in ("step.", "cell"))
-        yield from _predicates({name: () for name, _ in BELIEF_PREDICATES})
+        yield from _all(("short", "mid", "long"), "depth")
+        yield from _all(("step.", "cell"), "")
+        yield from _predicates(BELIEF_NAMES)
     elif command in ("assume", "retract"):
         known = [name for interface in USER_RULE_INTERFACES.values() for name, _ in interface]
-        yield from _predicates(dict.fromkeys([*(name for name, _ in BELIEF_PREDICATES), *known], ()))
-    elif command == "since" or is_query(before, commands):
-        yield from _predicates({name: () for name, _ in BELIEF_PREDICATES})
+        yield from _predicates([*BELIEF_NAMES, *known])
+    elif command == "since" or asks:
+        yield from _predicates(BELIEF_NAMES)
         yield CompletionWord("not", "what follows does not hold")
 
 
-def _predicates(known: Mapping[str, object]) -> Iterable[CompletionWord]:
-    """Yield predicates as candidates, each with its bracket."""
-    yield from (CompletionWord(f"{name}(", "predicate") for name in known)
+def _all(words: Iterable[str], meaning: str) -> Iterable[CompletionWord]:
+    """Return words as candidates of one meaning."""
+    return (CompletionWord(word, meaning) for word in words)
+
+
+def _predicates(names: Iterable[str]) -> Iterable[CompletionWord]:
+    """Return predicates as candidates, each with its bracket."""
+    return _all((f"{name}(" for name in names), "predicate")
 
 
 def _open_atom(before: str) -> tuple[str, int] | None:
@@ -125,11 +120,10 @@ def _open_atom(before: str) -> tuple[str, int] | None:
 
 def _slots(command: str, name: str, at: int) -> Iterable[ArgumentType]:
     """Yield the types that the argument of a predicate can have."""
-    goals = {**GOAL_VOCABULARY, **START_VOCABULARY}
     if command == "goal":
-        yield from goals.get(name, ())[at : at + 1]
-        if name in ("corner", "room"):
-            yield from (slot for slot in (ArgumentType(name, _anything),) if at == 0)
+        yield from GOAL_SLOTS.get(name, ())[at : at + 1]
+        if name in PLACE_WORDS and at == 0:
+            yield word_argument("place", PLACE_WORDS[name])
         return
     known: list[tuple[Signature, tuple[ArgumentType, ...]]] = [
         (signature, declared.arguments) for signature, declared in BELIEF_PREDICATES.items()
@@ -141,34 +135,16 @@ def _slots(command: str, name: str, at: int) -> Iterable[ArgumentType]:
             yield from slots[at : at + 1]
 
 
-def _anything(term: object) -> None:
-    """Return None: every term fits."""
-
-
 def _words(slot: ArgumentType, facts: Sequence[str], parameters: Sequence[str]) -> Iterable[str]:
     """Yield the words that fit an argument: those of its type, and those that facts have in such arguments."""
-    yield from WORDS_OF_TYPE.get(slot.name, ())
+    yield from WORDS_OF_TYPE.get(slot.name, slot.words)
     if slot.name in ("name", "parameter of the task", "parameter", "corner or name", "room or name"):
         yield from parameters
-    if slot.name == "name":
-        yield "utak"
-    if slot.name == "room":
-        yield from ("next",) if not facts else ()
     for fact in facts:
         name, parts = atom_parts(fact)
         declared = BELIEF_PREDICATES.get((name, len(parts)))
         if declared is not None:
             for other, part in zip(declared.arguments, parts, strict=True):
-                if other.limits is None and _alike(other.name, slot.name):
+                same = other.name == slot.name or {other.name, slot.name} <= THING_TYPES
+                if other.limits is None and same:
                     yield part
-
-
-def _alike(one: str, other: str) -> bool:
-    """Return whether names of one argument type fit another one."""
-    things = {"thing", "object", "candidate"}
-    return one == other or (one in things and other in things)
-
-
-def _names(facts: Sequence[str]) -> set[str]:
-    """Return all names in the arguments of facts."""
-    return {name for fact in facts for name in re.findall(r"[a-z_]\w*", fact.partition("(")[2])}

@@ -1,18 +1,16 @@
 """The state of a conversation at the prompt, and the execution of one statement."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
 from utak.kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
-from utak.simulator.repl.explaining import EXPLAINERS, Explainer, asked
 from utak.simulator.repl.printer import Printer
 from utak.simulator.repl.statements import MORE_SIGN, QUERY_SIGN, is_query
 from utak.simulator.run.changes import Change, changed_conditions
-from utak.simulator.run.live_story import LiveStory
-from utak.simulator.run.recorded_story import RecordedStory
 from utak.simulator.run.session import CannotAdoptError
+from utak.simulator.run.story import Story
 from utak.simulator.terminal.streams import StreamError
 
 QUIT_WORDS = ("quit", "exit")
@@ -34,21 +32,20 @@ class Dialogue:
 
     def __init__(
         self,
-        story: LiveStory | RecordedStory,
+        story: Story,
         engine: QueryEngine,
         printer: Printer,
         commands: Mapping[str, PromptCommand],
-        explainers: Mapping[str, Explainer] = EXPLAINERS,
     ) -> None:
         self.story, self.engine, self.printer = story, engine, printer
-        self.commands, self.explainers = commands, explainers
-        self.rest: Any = None  # a simulator.repl.asking.Pages
-        self._told_lacking = False
+        self.commands = commands
+        self.rest: Iterator[bool] | None = None  # prints the pages of the last answer that were not printed yet
+        self.told_lacking = False  # whether it was said that rules of the run are not given
 
     @property
     def names(self) -> list[str]:
         """The names of all commands."""
-        return sorted({*self.commands, *self.explainers, *QUIT_WORDS})
+        return sorted({*self.commands, *QUIT_WORDS})
 
     @property
     def prompt(self) -> str:
@@ -71,11 +68,11 @@ class Dialogue:
         self.engine.use_rules(self.story.rule_files)
         return self.engine.ask(self.known_facts(), query, max_rows)
 
-    def live_story(self, kind: str, text: str) -> LiveStory:
+    def live_story(self, kind: str, text: str) -> Story:
         """Return the story as a run that can be changed; a recorded episode is repeated up to this step first."""
         # Raises BadInputError when the episode cannot be repeated, or the change that is meant has errors.
-        if isinstance(self.story, RecordedStory):
-            changed_conditions(self.story.conditions, Change(self.story.at, kind, text), self.story.kb_files)
+        if self.story.is_recorded:
+            changed_conditions(self.story.conditions, Change(self.story.at, kind, text))
             self.printer.tell(
                 f"the run of {self.story.name} is repeated up to step {self.story.at}, to go on from there"
             )
@@ -104,15 +101,6 @@ class Dialogue:
             self.printer.tell(f"this is a bug of ours: {type(bug).__name__}: {str(bug)[:MAX_BUG_CHARACTERS]}")
         return True
 
-    def _tell_lacking(self) -> None:
-        """Print, before the first explanation, that rules of the run are not given, if so."""
-        if not self._told_lacking:
-            from utak.simulator.explaining.missing_rules import missing_rules
-
-            self._told_lacking = True
-            if lacking := missing_rules(self.story.header, self.story.rule_files):
-                self.printer.tell(f"{lacking}; give rules with utak repl --kb FILE")
-
     def _parts(self, statement: str) -> tuple[str, str]:
         """Return the name of a statement's command and what follows it; a query has the name `?-`."""
         text = statement.strip()
@@ -129,9 +117,6 @@ class Dialogue:
         """Execute a command by its name."""
         if name in self.commands:
             self.commands[name].run(self, rest)
-        elif name in self.explainers:
-            self._tell_lacking()
-            self.printer.say(self.explainers[name].explain(self.story, *asked(rest)))
         else:
             hint = did_you_mean(name, self.names) or "help lists what there is, ?- asks"
             hint = f"{name} takes nothing behind it" if name in self.names else hint

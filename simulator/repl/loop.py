@@ -1,34 +1,23 @@
 """The loop of `utak repl`: statements are read and executed until `quit` or the end of the input."""
 
-from collections.abc import Mapping
-
 from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.repl.commands import PROMPT_COMMANDS
 from utak.simulator.repl.completion import CompletionWord, completions
 from utak.simulator.repl.dialogue import Dialogue
-from utak.simulator.repl.explaining import EXPLAINERS, Explainer
-from utak.simulator.repl.printer import Printer, open_printer
+from utak.simulator.repl.printer import open_printer
 from utak.simulator.repl.reading import History, LineReader, open_reader
 from utak.simulator.repl.statements import StatementBuffer
-from utak.simulator.run.live_story import LiveStory
-from utak.simulator.run.recorded_story import RecordedStory
+from utak.simulator.run.story import Story
 
 
-def converse(
-    story: LiveStory | RecordedStory, engine: QueryEngine, explainers: Mapping[str, Explainer] = EXPLAINERS
-) -> None:
+def converse(story: Story, engine: QueryEngine) -> None:
     """Talk with the user of the standard streams about a story, until the input ends or they leave."""
     printer, history = open_printer(), History()
-    dialogue = Dialogue(story, engine, printer, PROMPT_COMMANDS, explainers)
+    dialogue = Dialogue(story, engine, printer, PROMPT_COMMANDS)
     reader = open_reader(lambda text: complete(dialogue, text), history, lambda text: is_whole(dialogue, text))
-    greet(dialogue, printer)
+    kind = "an episode" if story.is_recorded else "a run"
+    printer.note(f"{kind} at step {story.at}; help lists what there is, ?- asks, Tab completes, quit leaves")
     read_and_obey(dialogue, reader, history)
-
-
-def greet(dialogue: Dialogue, printer: Printer) -> None:
-    """Print what this is, on a terminal."""
-    kind = "an episode" if isinstance(dialogue.story, RecordedStory) else "a run"
-    printer.note(f"{kind} at step {dialogue.story.at}; help lists what there is, ?- asks, Tab completes, quit leaves")
 
 
 def read_and_obey(dialogue: Dialogue, reader: LineReader, history: History | None = None) -> None:

@@ -3,11 +3,13 @@
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
 from utak.geometry.kernels.arrays import Bools, Floats
+from utak.kb.language.atoms import atom_parts
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled
 
@@ -37,26 +39,19 @@ class _Facts:
     """The facts of a world model by predicate; arguments are texts."""
 
     def __init__(self, facts: Iterable[str]) -> None:
-        self._rows: dict[str, list[_Row]] = defaultdict(list)
-        for fact in facts:
-            name, _, inner = fact.strip().removesuffix(".").partition("(")
-            self._rows[name].append(tuple(part.strip() for part in inner.removesuffix(")").split(",")))
+        self._rows: dict[tuple[str, int], list[_Row]] = defaultdict(list)
+        for name, arguments in map(atom_parts, facts):
+            self._rows[name, len(arguments)].append(tuple(arguments))
 
-    def rows(self, name: str, arity: int) -> list[_Row]:
-        """Return the arguments of all facts of a predicate."""
-        return [row for row in self._rows.get(name, ()) if len(row) == arity]
-
-    def about(self, name: str, arity: int, thing: str) -> list[_Row]:
-        """Return the arguments of the facts of a predicate that begin with a thing."""
-        return [row for row in self.rows(name, arity) if row[0] == thing]
+    def rows(self, name: str, arity: int, thing: str = "") -> list[_Row]:
+        """Return the arguments of all facts of a predicate, or of those that begin with a thing."""
+        return [row for row in self._rows[name, arity] if thing in ("", row[0])]
 
     def numbers(self, name: str, arity: int, words: int) -> Iterator[tuple[_Row, list[int]]]:
         """Yield of each fact of a predicate its first arguments as text and the others as integers."""
         for row in self.rows(name, arity):
-            try:
+            with suppress(ValueError):
                 yield row[:words], [int(part) for part in row[words:]]
-            except ValueError:
-                continue
 
 
 class _Grid(NamedTuple):
@@ -158,7 +153,6 @@ def _inside(segments: Floats, grid: _Grid) -> Bools:
 
 
 def _line(ends: Sequence[int], grid: _Grid) -> Iterator[tuple[int, int]]:
-    """Yield the characters (row, column) that a straight line passes."""
     e1, n1, e2, n2 = ends
     count = min(MAX_PICTURE_COLUMNS * 4, 2 + int(4 * math.dist((e1, n1), (e2, n2)) / grid.unit))
     for part in range(1, count):
@@ -172,15 +166,15 @@ def _legend(known: _Facts, marks: Mapping[str, str], place: Sequence[int] | None
     """Yield the lines that say what the marks are, the unit and the frame."""
     if place is not None:
         east, north = (value / FACT_UNITS_PER_SQUARE for value in place)
-        rooms = "".join(f", in {room}" for _, room in known.about("in", 2, "org"))
+        rooms = "".join(f", in {room}" for _, room in known.rows("in", 2, "org"))
         yield f"{UTAK_MARK} the robot (utak, org in facts): east {east:g}, north {north:g}{rooms}"
     for node in sorted(marks, key=_number):
         yield f"{marks[node]} {node}: {', '.join(_said_of(known, node))}"
     for (door,) in known.rows("door", 1):
         wide = "".join(
-            f", {int(w) / FACT_UNITS_PER_SQUARE:g} wide" for _, w in known.about("width", 2, door) if w.isdigit()
+            f", {int(w) / FACT_UNITS_PER_SQUARE:g} wide" for _, w in known.rows("width", 2, door) if w.isdigit()
         )
-        sides = next((f" between {a} and {b}" for _, a, b in known.about("connects", 3, door)), "")
+        sides = next((f" between {a} and {b}" for _, a, b in known.rows("connects", 3, door)), "")
         yield f"{DOOR_MARK} {door}: a door{sides}{wide}"
     side = grid.unit // FACT_UNITS_PER_SQUARE
     yield f"{FLOOR_MARK} floor, {VERGE_MARK} verge (walls), blank: not seen; a small letter: rather a wall than a thing"
@@ -190,10 +184,10 @@ def _legend(known: _Facts, marks: Mapping[str, str], place: Sequence[int] | None
 
 def _said_of(known: _Facts, node: str) -> Iterator[str]:
     """Yield what is believed about an object, for the legend."""
-    yield from (f"an object {share} %" for _, kind, share in known.about("kind", 3, node) if kind == "object")
-    yield from (f"{shape} {share} %" for _, shape, share in known.about("shape", 3, node))
-    yield from (f"colour {colour}" for _, colour, _ in known.about("colour", 3, node))
-    yield from (f"in {room}" for _, room in known.about("in", 2, node))
-    if known.about("held", 1, node):
+    yield from (f"an object {share} %" for _, kind, share in known.rows("kind", 3, node) if kind == "object")
+    yield from (f"{shape} {share} %" for _, shape, share in known.rows("shape", 3, node))
+    yield from (f"colour {colour}" for _, colour, _ in known.rows("colour", 3, node))
+    yield from (f"in {room}" for _, room in known.rows("in", 2, node))
+    if known.rows("held", 1, node):
         yield "in hand"
     yield from (f"meant by {name}" for name, meant in known.rows("bound", 2) if meant == node)

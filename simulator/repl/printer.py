@@ -10,7 +10,8 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from utak.simulator.terminal.streams import StreamError, escape_controls
+from utak.kb.reasoning.query import plain_table
+from utak.simulator.terminal.streams import StreamError, escape_controls, one_line
 
 MIN_PAGE_ROWS = 5  # rows shown at once on the lowest terminal; a convention
 LINES_BESIDE_A_PAGE = 6  # lines of a terminal for the prompt, the frame of a table and what is said below it
@@ -51,11 +52,16 @@ class Printer:
     def note(self, text: str) -> None:
         """Print what helps a person to read an answer; nothing on a pipe."""
         if self.is_terminal:
-            self._print(text, "dim")
+            self.styled(text, "dim")
 
-    def strong(self, text: str, style: str) -> None:
-        """Print an answer, on a terminal with colours in a style of `rich`."""
-        self._print(text, style)
+    def styled(self, text: str, style: str) -> None:
+        """Print a text in a style of `rich`, or plainly without colours."""
+        if self._console is None:
+            self.say(text)
+            return
+        from rich.text import Text
+
+        self._on_console(Text(escape_controls(self._broken(text)), style))
 
     def table(self, columns: Sequence[str], rows: Sequence[Sequence[int | str]]) -> None:
         """Print a table of bindings."""
@@ -71,7 +77,7 @@ class Printer:
             numbers = bool(rows) and all(isinstance(row[at], int) for row in rows)
             table.add_column(Text(column), justify="right" if numbers else "left", overflow="fold")
         for row in rows:
-            table.add_row(*(Text(escape_controls(str(v), False), "cyan" if isinstance(v, int) else "") for v in row))
+            table.add_row(*(Text(one_line(str(v)), "cyan" if isinstance(v, int) else "") for v in row))
         self._on_console(table)
 
     def picture(self, lines: Sequence[str], styles: Mapping[str, str]) -> None:
@@ -84,18 +90,9 @@ class Printer:
         text = Text("", no_wrap=True)
         for number, line in enumerate(lines):
             text.append("\n" if number else "")
-            for char in escape_controls(line, False):
+            for char in one_line(line):
                 text.append(char, styles.get(char, ""))
         self._on_console(text)
-
-    def _print(self, text: str, style: str) -> None:
-        """Print a text in a style, or plainly without colours."""
-        if self._console is None:
-            self.say(text)
-            return
-        from rich.text import Text
-
-        self._on_console(Text(escape_controls(self._broken(text)), style))
 
     def _broken(self, text: str) -> str:
         """Return a text whose lines are broken between words where the terminal ends; as it is for a pipe."""
@@ -123,19 +120,6 @@ def broken_line(line: str, width: int) -> str:
     indent = line[: len(line) - len(line.lstrip(" "))] + "  "
     parts = textwrap.wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
     return "\n".join(parts) or line
-
-
-def plain_table(columns: Sequence[str], rows: Sequence[Sequence[int | str]]) -> str:
-    """Return a table as text, columns parted by two blanks, without a line end at the end.
-
-    >>> print(plain_table(["X", "C"], [["o1", 90], ["o12", 5]]))
-    X    C
-    o1   90
-    o12  5
-    """
-    cells = [list(columns), *([str(value) for value in row] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    return "\n".join("  ".join(map(str.ljust, row, widths)).rstrip() for row in cells)
 
 
 def units_of(columns: Sequence[str], types: Sequence[str]) -> str:

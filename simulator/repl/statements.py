@@ -8,6 +8,8 @@ QUERY_SIGN, MORE_SIGN = "?-", ";"
 FACT_COMMANDS = frozenset({"assume", "retract", "goal", "since", "why", "whynot"})  # they take facts or rules
 # The beginning of a query without `?-`: an atom, perhaps negated; an aggregate; or a variable that is compared.
 QUERY_START = re.compile(r"(not\s+)*(-?_*[a-z]\w*\s*\(|#\w+\s*\{|[A-Z]\w*\s*[=<>!])")
+QUOTED = re.compile(r'"(?:\\.|[^"\\])*("?)', re.DOTALL)
+FULL_STOP = re.compile(r"(?<!\.)\.(?!\S)")
 OPEN_END = re.compile(r"(,|;|:|:-|=|<|>|\|)$")  # a fact command goes on after such an end
 
 
@@ -22,19 +24,18 @@ def is_query(text: str, commands: Collection[str]) -> bool:
     return QUERY_START.match(text) is not None
 
 
+def _unquoted(text: str) -> str:
+    """Return a text of the same length without what stands within quotes; one quote is left where they stay open."""
+    return QUOTED.sub(lambda found: ("_" if found[1] else '"') + "_" * (len(found[0]) - 1), text)
+
+
 def without_comment(line: str) -> str:
     """Return a line without the comment at its end; a `%` within quotes begins none.
 
     >>> without_comment('X = "5%".  % a share')
     'X = "5%".'
     """
-    quoted = False
-    for at, char in enumerate(line):
-        if char == '"' and (at == 0 or line[at - 1] != "\\"):
-            quoted = not quoted
-        elif char == "%" and not quoted:
-            return line[:at].rstrip()
-    return line.rstrip()
+    return line[: len(_unquoted(line).partition("%")[0])].rstrip()
 
 
 def query_end(text: str) -> int:
@@ -43,27 +44,16 @@ def query_end(text: str) -> int:
     >>> query_end("X = 1..3, room(R). help")
     18
     """
-    quoted = False
-    for at, char in enumerate(text):
-        if char == '"' and (at == 0 or text[at - 1] != "\\"):
-            quoted = not quoted
-        elif char == "." and not quoted and text[at - 1 : at] != "." and not text[at + 1 : at + 2].strip():
-            return at + 1
-    return -1
+    found = FULL_STOP.search(_unquoted(text))
+    return -1 if found is None else found.end()
 
 
 def has_open_end(text: str) -> bool:
     """Return whether a fact or rule goes on behind a text: a bracket or a quotation is open, or more must follow."""
-    quoted, depth, before = False, 0, ""
-    for char in text:
-        if char == '"' and before != "\\":
-            quoted = not quoted
-        elif not quoted:
-            depth += (char in "({[") - (char in ")}]")
-        before = char
-    stripped = text.rstrip()
+    shown, stripped = _unquoted(text), text.rstrip()
+    depth = sum((char in "({[") - (char in ")}]") for char in shown)
     rule_goes_on = ":-" in stripped and not stripped.endswith(".")
-    return quoted or depth > 0 or rule_goes_on or OPEN_END.search(stripped) is not None
+    return '"' in shown or depth > 0 or rule_goes_on or OPEN_END.search(stripped) is not None
 
 
 class StatementBuffer:

@@ -4,33 +4,35 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 
-from utak.simulator.episode.episode import EpisodeLine
 from utak.simulator.repl.asking import names_word
 from utak.simulator.repl.dialogue import Dialogue
+from utak.simulator.replay.changes import is_outline, outlined_node
 from utak.simulator.run.interrupts import defer_interrupt
-from utak.simulator.terminal.action_in_words import describe
+from utak.simulator.scenario.settings import MAX_STEPS
+from utak.simulator.terminal.action_in_words import end_in_words, step_in_words
 from utak.simulator.terminal.progress import StepProgress
-from utak.simulator.terminal.streams import escape_controls
-
-MAX_GOTO_STEP = 1_000_000  # the greatest number of steps that a command takes; a convention
-OUTLINE_START = "segment("  # facts about outlines: many of them change at every step
 
 
 def whole_number(text: str) -> int | None:
-    """Return the number that a text denotes, 0 to MAX_GOTO_STEP; None for anything else."""
-    if text.isascii() and text.isdigit() and len(text) <= 9 and int(text) <= MAX_GOTO_STEP:
+    """Return the number that a text denotes, 0 to MAX_STEPS; None for anything else."""
+    if text.isascii() and text.isdigit() and len(text) <= 9 and int(text) <= MAX_STEPS:
         return int(text)
     return None
 
 
+def _count(dialogue: Dialogue, command: str, rest: str) -> int:
+    """Return the number of steps that `step` or `back` is given, 1 without one; say what is wrong and return 0."""
+    text = rest.removesuffix(".") or "1"
+    if count := whole_number(text):
+        return count
+    dialogue.printer.tell(f"{command} takes a number of steps, not {text[:40]}")
+    return 0
+
+
 def step(dialogue: Dialogue, rest: str) -> None:
     """Go on by one step, or by a number of them."""
-    text = rest.removesuffix(".") or "1"
-    count = whole_number(text)
-    if not count:
-        dialogue.printer.tell(f"step takes a number of steps, not {text[:40]}")
-        return
-    advance(dialogue, count)
+    if count := _count(dialogue, "step", rest):
+        advance(dialogue, count)
 
 
 def run(dialogue: Dialogue, rest: str) -> None:
@@ -40,15 +42,14 @@ def run(dialogue: Dialogue, rest: str) -> None:
 
 def back(dialogue: Dialogue, rest: str) -> None:
     """Go back by one step, or by a number of them."""
-    text = rest.removesuffix(".") or "1"
-    count, story = whole_number(text), dialogue.story
-    if not count:
-        dialogue.printer.tell(f"back takes a number of steps, not {text[:40]}")
-    elif story.at == 0:
+    story = dialogue.story
+    if not (count := _count(dialogue, "back", rest)):
+        return
+    if story.at == 0:
         dialogue.printer.tell("this is step 0, the first one")
-    else:
-        story.go_to(max(0, story.at - count))
-        dialogue.printer.say(told_step(story.line))
+        return
+    story.go_to(max(0, story.at - count))
+    dialogue.printer.say(step_in_words(story.line))
 
 
 def goto(dialogue: Dialogue, rest: str) -> None:
@@ -59,7 +60,7 @@ def goto(dialogue: Dialogue, rest: str) -> None:
         dialogue.printer.tell(f"goto takes the number of a step, not {text[:40] or 'nothing'}")
     elif wanted < len(story.lines):
         story.go_to(wanted)
-        dialogue.printer.say(told_step(story.line))
+        dialogue.printer.say(step_in_words(story.line))
     else:
         story.go_to(len(story.lines) - 1)
         advance(dialogue, wanted - story.at)
@@ -83,26 +84,14 @@ def advance(dialogue: Dialogue, count: int | None) -> None:
         if not moved:
             break
         done += 1
-        printer.say(told_step(story.line))
+        printer.say(step_in_words(story.line))
         if pressed:
             printer.tell("interrupted")
             return
     if story.result is not None:
-        printer.say(told_result(story.result))
+        printer.say(end_in_words(story.result))
     elif done != count or done == 0:
         printer.tell("there are no more steps")
-
-
-def told_step(line: EpisodeLine) -> str:
-    """Return one line about a step: its number, the command before it and the reason of that."""
-    why = escape_controls(str(line.get("why", "")), False)
-    return f"step {line['step']}: {describe(line.get('action'))}: {why}"
-
-
-def told_result(result: EpisodeLine) -> str:
-    """Return one line about the end of a run."""
-    reason = escape_controls(str(result["reason"]), False)
-    return f"{result['verdict']} after {result['steps']} steps: {reason}"
 
 
 def diff(dialogue: Dialogue, rest: str) -> None:
@@ -127,13 +116,8 @@ def differences(before: Sequence[str], after: Sequence[str], word: str = "") -> 
     """Return the facts of two steps that hold at one of them alone: `- fact`, `+ fact`, sorted by the fact."""
     old, new = ({fact for fact in facts if not word or names_word(fact, word)} for facts in (before, after))
     changes = sorted((fact, sign) for sign, facts in (("-", old - new), ("+", new - old)) for fact in facts)
-    listed = [f"{sign} {fact}" for fact, sign in changes if word or not fact.startswith(OUTLINE_START)]
+    listed = [f"{sign} {fact}" for fact, sign in changes if word or not is_outline(fact)]
     if not word:
-        counts = Counter(fact[len(OUTLINE_START) :].partition(",")[0] for fact, _ in changes if _is_outline(fact))
+        counts = Counter(outlined_node(fact) for fact, _ in changes if is_outline(fact))
         listed += [f"~ {count} pieces of the outline of {node}" for node, count in sorted(counts.items())]
     return listed
-
-
-def _is_outline(fact: str) -> bool:
-    """Return whether a fact is a piece of an outline."""
-    return fact.startswith(OUTLINE_START)

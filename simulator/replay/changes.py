@@ -5,7 +5,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
-EDGE_FACT = "segment("  # facts that begin so are counted by node: one more corner renumbers all edges behind it
+OUTLINE_START = "segment("  # facts that begin so are counted by node: one more corner renumbers all edges behind it
 WHOLE_ARGUMENT = re.compile(r"([(,])-?\d+(?=[,)])", re.ASCII)  # an argument that is a number
 
 
@@ -28,28 +28,28 @@ def changes(before: Sequence[str], after: Sequence[str]) -> Changes:
     """
     old, new = set(before), set(after)
     gone, come = [fact for fact in before if fact not in new], [fact for fact in after if fact not in old]
-    edges = Counter(map(_node, filter(_is_edge, come)))
-    lost = Counter(map(_node, filter(_is_edge, gone)))
+    edges = Counter(map(outlined_node, filter(is_outline, come)))
+    lost = Counter(map(outlined_node, filter(is_outline, gone)))
     edges.update({name: count for name, count in lost.items() if name not in edges})
     waiting: dict[str, list[str]] = defaultdict(list)
     for fact in gone:
-        if not _is_edge(fact):
+        if not is_outline(fact):
             waiting[WHOLE_ARGUMENT.sub(r"\1#", fact)].append(fact)
     added, changed = [], []
     for fact in come:
         former = waiting.get(WHOLE_ARGUMENT.sub(r"\1#", fact))
         if former:
             changed.append((former.pop(0), fact))
-        elif not _is_edge(fact):
+        elif not is_outline(fact):
             added.append(fact)
     return Changes(added, [fact for rest in waiting.values() for fact in rest], changed, dict(edges))
 
 
-def _is_edge(fact: str) -> bool:
-    """Return whether a fact is an edge of an outline."""
-    return fact.startswith(EDGE_FACT)
+def is_outline(fact: str) -> bool:
+    """Return whether a fact is an edge of an outline; many of them change at every step."""
+    return fact.startswith(OUTLINE_START)
 
 
-def _node(fact: str) -> str:
-    """Return the node of an edge."""
-    return fact[len(EDGE_FACT) :].partition(",")[0]
+def outlined_node(fact: str) -> str:
+    """Return the node of which a fact states an edge of the outline."""
+    return fact[len(OUTLINE_START) :].partition(",")[0]

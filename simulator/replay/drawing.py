@@ -4,18 +4,17 @@ Points are (x, y) in squares, x to the east and y to the north.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from typing import Any, NamedTuple
 
-import shapely
-
+from utak.geometry.counts.retina import FIELDS, MAX_GRAY_LEVEL
 from utak.geometry.motion.se2 import direction
-from utak.kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
+from utak.kb.language.atoms import atom_parts
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.simulator.episode.episode import Episode
-from utak.simulator.episode.record import recorded_world
+from utak.simulator.episode.record import world_at
 from utak.simulator.world.world import VERGE_COLOUR, World
 
 PIXELS_PER_SQUARE = 10  # of a picture of a small table; a convention
@@ -23,6 +22,9 @@ MAX_PICTURE_PIXELS = 640  # of the longer side of a picture; a convention
 LETTER_HUES = {"r": 0, "o": 30, "y": 55, "g": 120, "c": 180, "t": 175, "a": 210, "p": 285, "v": 270, "m": 315}
 BELIEVED_COLOUR, BELIEVED_THING_COLOUR = "#1f6fc4", "#c8322b"  # of floor and verge, and of objects
 
+FACT_NUMBER = re.compile(r"-?[0-9]{1,9}")
+# An edge of an outline; numbers of at most nine digits.
+SEGMENT = re.compile(r"segment\(([a-z]\w*),\d{1,9}((?:,-?\d{1,9}){4}),(\d{1,9})\)\.", re.ASCII)
 DrawnPoint = Sequence[float]
 
 
@@ -37,6 +39,15 @@ class PlacedFrame(NamedTuple):
         """Return a point of the robot frame in the picture's frame, in squares."""
         cosine, sine = direction(self.degrees)
         return self.x + east * cosine - north * sine, self.y + east * sine + north * cosine
+
+
+class BelievedSegment(NamedTuple):
+    """A segment of a believed outline."""
+
+    node: str  # whose outline it is of
+    start: tuple[float, float]  # its ends (east, north), squares, robot frame
+    end: tuple[float, float]
+    confidence: int  # percent
 
 
 class Canvas:
@@ -86,38 +97,36 @@ class Canvas:
 
 def table_svg(
     world: World,
-    polygons: Mapping[str, Any] | None = None,
-    utak: DrawnPoint | None = None,
     held: str | None = None,
     step: Mapping[str, Any] | None = None,
     track: Sequence[DrawnPoint] = (),
 ) -> str:
-    """Return a picture of the table as it is, and upon it what is sensed and believed."""
+    """Return a picture of the table as it is, and upon it what is sensed and believed at a step.
+
+    track : the places of Utak so far, the waking place first.
+    """
     canvas = Canvas(0, 0, world.width, world.height)
-    now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
     canvas.polygons(_rings(world.verge), f"fill:{letter_fill(VERGE_COLOUR)}")
     for thing in world.fixed:
         canvas.polygons(_rings(thing.polygon), f"fill:{letter_fill(thing.colour)};stroke:#444", f"{thing.name} (fixed)")
     for thing in world.movable:
         edge = "stroke:#000;stroke-width:2" if thing.name == held else "stroke:#777"
-        canvas.polygons(_rings(now[thing.name]), f"fill:{letter_fill(thing.colour)};{edge}", thing.name)
-        canvas.word(now[thing.name].centroid.x, now[thing.name].centroid.y, thing.name)
-    x, y = world.utak if utak is None else (utak[0], utak[1])
+        canvas.polygons(_rings(thing.polygon), f"fill:{letter_fill(thing.colour)};{edge}", thing.name)
+        canvas.word(thing.polygon.centroid.x, thing.polygon.centroid.y, thing.name)
     if step is not None:
-        _draw_retina(canvas, (x, y), world.heading, step["retina"])
-        _draw_segments(canvas, PlacedFrame(*world.utak, world.heading), step["belief"].get("facts", ()))
+        _draw_retina(canvas, world.utak, world.heading, step["retina"])
+        x, y = track[0]
+        _draw_segments(canvas, PlacedFrame(x, y, world.heading), step["belief"].get("facts", ()))
     if len(track) > 1:
         canvas.lines(track, "stroke:#2a7;stroke-width:1.5;stroke-dasharray:3 3")
-    canvas.disc(x, y, 0.45, "fill:#2a7;stroke:#fff")
+    canvas.disc(*world.utak, 0.45, "fill:#2a7;stroke:#fff")
     return canvas.svg()
 
 
-def step_svg(episode: Episode, line: Mapping[str, Any]) -> str:
+def step_svg(episode: Episode, line: dict[str, Any]) -> str:
     """Return a picture of the table at a step of an episode, and upon it what is sensed and believed."""
-    polygons = {name: shapely.Polygon(ring) for name, ring in line["objects"].items()}
     track = [step["utak"] for step in episode.steps[: line["step"] + 1]]
-    world = replace(recorded_world(episode.header), utak=(float(track[0][0]), float(track[0][1])))
-    return table_svg(world, polygons, track[-1], line["held"], line, track)
+    return table_svg(world_at(episode.header, line), line["held"], line, track)
 
 
 def belief_svg(facts: Sequence[str], place: DrawnPoint) -> str:
@@ -126,9 +135,9 @@ def belief_svg(facts: Sequence[str], place: DrawnPoint) -> str:
     east, north = ([float(value) for value in values] for values in zip(*ends, (place[0], place[1]), strict=True))
     canvas = Canvas(min(east) - 1, min(north) - 1, max(east) + 1, max(north) + 1)
     _draw_segments(canvas, PlacedFrame(0.0, 0.0, 0.0), facts)
-    for name, (w, s, e, n) in rectangles(facts).items():
+    for name, (w, s, e, n) in dict(rectangles(facts)).items():
         if name not in ("floor", "verge"):
-            canvas.word((w + e) / 2, (s + n) / 2, name)
+            canvas.word((w + e) / 2 / FACT_UNITS_PER_SQUARE, (s + n) / 2 / FACT_UNITS_PER_SQUARE, name)
     canvas.disc(place[0], place[1], 0.45, "fill:#2a7;stroke:#fff")
     return canvas.svg()
 
@@ -141,30 +150,23 @@ def letter_fill(letter: str) -> str:
     return f"hsl({hue},45%,78%)"
 
 
-def segments(facts: Iterable[str]) -> list[tuple[str, tuple[float, float], tuple[float, float], int]]:
-    """Return name, start, end (squares, robot frame) and confidence (percent) of each segment/7 among facts."""
-    found = []
+def segments(facts: Iterable[str]) -> Iterator[BelievedSegment]:
+    """Yield each segment/7 among facts; damaged ones are left out."""
     for fact in facts:
-        if fact.startswith("segment("):
-            name, _, *numbers = fact[len("segment(") :].rstrip(".)").split(",")
-            e1, n1, e2, n2 = (int(number) / FACT_UNITS_PER_SQUARE for number in numbers[:4])
-            found.append((name, (e1, n1), (e2, n2), int(numbers[4])))
-    return found
+        if found := SEGMENT.fullmatch(fact.replace(" ", "")):
+            e1, n1, e2, n2 = (int(part) / FACT_UNITS_PER_SQUARE for part in found[2][1:].split(","))
+            yield BelievedSegment(found[1], (e1, n1), (e2, n2), int(found[3]))
 
 
-def rectangles(facts: Iterable[str]) -> dict[str, tuple[float, float, float, float]]:
-    """Return west, south, east and north (squares, robot frame) of each rect/5 among facts, by the name of its node."""
-    found = {}
+def rectangles(facts: Iterable[str]) -> Iterator[tuple[str, list[int]]]:
+    """Yield the node and west, south, east, north (hundredths of squares, robot frame) of each rect/5 among facts."""
     for fact in facts:
-        if fact.startswith("rect("):
-            name, *numbers = fact[len("rect(") :].rstrip(".)").split(",")
-            w, s, e, n = (int(number) / FACT_UNITS_PER_SQUARE for number in numbers)
-            found[name] = (w, s, e, n)
-    return found
+        name, arguments = atom_parts(fact) if fact.startswith("rect(") else ("", ())
+        if name and len(arguments) == 5 and all(FACT_NUMBER.fullmatch(part) for part in arguments[1:]):
+            yield arguments[0], [int(part) for part in arguments[1:]]
 
 
 def _rings(shape: Any) -> list[Sequence[DrawnPoint]]:
-    """Return all rings of a shapely Polygon or MultiPolygon."""
     parts = [part for part in getattr(shape, "geoms", [shape]) if not part.is_empty]
     return [list(ring.coords)[:-1] for part in parts for ring in (part.exterior, *part.interiors)]
 

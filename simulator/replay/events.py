@@ -38,7 +38,8 @@ def _events_of(before: EpisodeLine | None, line: EpisodeLine) -> list[str]:
     facts, earlier = (set(_facts_named("refuted", step["belief"])) for step in (line, before))
     if facts - earlier:
         kinds.append("refuted")
-    if _replanned(before["belief"], belief):
+    old, new = _plan(before["belief"]), _plan(belief)
+    if old and new != old[len(old) - len(new) :]:  # neither the former plan nor the rest of it
         kinds.append("replanned")
     if line["held"] != before["held"]:
         kinds += ["release"] * (before["held"] is not None) + ["grasp"] * (line["held"] is not None)
@@ -47,17 +48,8 @@ def _events_of(before: EpisodeLine | None, line: EpisodeLine) -> list[str]:
 
 def _surprised(belief: dict[str, Any]) -> bool:
     """Return whether an impression has noise, or was explained otherwise than as predicted."""
-    cells = belief.get("cells")
-    noise = cells.get("noise") if isinstance(cells, dict) else None
-    return (
-        bool(noise) or NOISE_STATUS in str(belief.get("status", "")) or belief.get("pose", "predicted") != "predicted"
-    )
-
-
-def _replanned(before: dict[str, Any], belief: dict[str, Any]) -> bool:
-    """Return whether a plan is neither the former one nor the rest of it."""
-    old, new = _plan(before), _plan(belief)
-    return bool(old) and new != old[len(old) - len(new) :]
+    noise = belief.get("cells", {}).get("noise") or NOISE_STATUS in belief.get("status", "")
+    return bool(noise) or belief.get("pose", "predicted") != "predicted"
 
 
 def _plan(belief: dict[str, Any]) -> list[str]:

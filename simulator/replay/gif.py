@@ -5,7 +5,6 @@ This is the only module that uses pillow.
 
 import io
 import math
-import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
@@ -14,11 +13,10 @@ from PIL import Image, ImageDraw, ImageFont
 
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
 from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.replay.drawing import PlacedFrame, segments
 from utak.simulator.terminal.action_in_words import describe
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.terminal.streams import one_line
 
-# An edge of an outline; numbers of at most nine digits.
-SEGMENT = re.compile(r"segment\(([a-z]\w*),(\d{1,9})((?:,-?\d{1,9}){4}),(\d{1,9})\)\.", re.ASCII)
 PANEL_PIXELS = 420  # the width or height of each of the two pictures, whichever is greater
 GAP_PIXELS = 12  # between and around the two pictures
 TEXT_PIXELS = 14  # the height of a line of text
@@ -53,19 +51,20 @@ class GifScale(NamedTuple):
     width: int  # of the table, in squares
     height: int
     pixels: float  # the side of a square
-    origin: tuple[float, float]  # where the robot woke, in squares, table frame
-    heading: float  # the direction in which it faced then, in degrees, counter-clockwise from the table's north
+    robot: PlacedFrame  # the robot frame on the table
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """The size of a picture of the table, in pixels."""
+        return math.ceil(self.width * self.pixels), math.ceil(self.height * self.pixels)
 
     def table(self, x: float, y: float) -> tuple[float, float]:
         """Return the pixel of a point of the table."""
         return x * self.pixels, (self.height - y) * self.pixels
 
-    def robot(self, east: float, north: float) -> tuple[float, float]:
+    def believed(self, east: float, north: float) -> tuple[float, float]:
         """Return the pixel of a point of the robot frame, in squares."""
-        angle = math.radians(self.heading)
-        x = self.origin[0] + east * math.cos(angle) - north * math.sin(angle)
-        y = self.origin[1] + east * math.sin(angle) + north * math.cos(angle)
-        return self.table(x, y)
+        return self.table(*self.robot.place(east, north))
 
 
 def animation(episode: Episode) -> bytes:
@@ -83,16 +82,14 @@ def _frames(episode: Episode) -> Iterator[Any]:
     width, height = episode.header["world"]["table"]
     pixels = PANEL_PIXELS / max(width, height)
     x, y = episode.steps[0]["utak"]
-    scale = GifScale(width, height, pixels, (x, y), float(episode.header["world"]["heading"]))
-    panel = math.ceil(width * pixels) + GAP_PIXELS
-    size = 2 * panel + GAP_PIXELS, math.ceil(height * pixels) + 2 * GAP_PIXELS + TEXT_LINES * (TEXT_PIXELS + 4)
-    colours = [part for colour in PALETTE.values() for part in colour]
+    scale = GifScale(width, height, pixels, PlacedFrame(x, y, float(episode.header["world"]["heading"])))
+    panel = scale.size[0] + GAP_PIXELS
+    size = 2 * panel + GAP_PIXELS, scale.size[1] + 2 * GAP_PIXELS + TEXT_LINES * (TEXT_PIXELS + 4)
     font = ImageFont.load_default(TEXT_PIXELS)
     places: Pixels = []
     for line in episode.steps:
         places.append(scale.table(*line["utak"]))
-        image = Image.new("P", size, COLOURS["ground"])
-        image.putpalette(colours)
+        image = _picture(size, "ground")
         image.paste(_true(episode, line, scale, places), (GAP_PIXELS, GAP_PIXELS))
         image.paste(_believed(line, scale), (panel + GAP_PIXELS, GAP_PIXELS))
         on = ImageDraw.Draw(image)
@@ -103,16 +100,14 @@ def _frames(episode: Episode) -> Iterator[Any]:
 
 
 def _words(episode: Episode, line: EpisodeLine) -> list[str]:
-    """Return the lines of text below a step: what was done, why, and how the run ended."""
     words = [f"step {line['step']}: {describe(line['action'])}", line["why"]]
     if episode.result is not None and line is episode.steps[-1]:
         words.append(f"{episode.result['verdict']}: {episode.result['reason']}")
     return words
 
 
-def _panel(scale: GifScale, colour: str) -> Any:
-    """Return an empty picture of the size of the table."""
-    size = math.ceil(scale.width * scale.pixels), math.ceil(scale.height * scale.pixels)
+def _picture(size: tuple[int, int], colour: str) -> Any:
+    """Return an empty picture with our colours."""
     image = Image.new("P", size, COLOURS[colour])
     image.putpalette([part for rgb in PALETTE.values() for part in rgb])
     return image
@@ -120,7 +115,7 @@ def _panel(scale: GifScale, colour: str) -> Any:
 
 def _true(episode: Episode, line: EpisodeLine, scale: GifScale, places: Pixels) -> Any:
     """Return the left picture: the table as it is, and the robot's places so far."""
-    image = _panel(scale, "ground")
+    image = _picture(scale.size, "ground")
     on, world = ImageDraw.Draw(image), episode.header["world"]
     for rings in world["verge"]:
         for number, ring in enumerate(rings):
@@ -144,24 +139,15 @@ def _fill(on: ImageDraw.ImageDraw, ring: Sequence[Any], scale: GifScale, colour:
 
 def _believed(line: EpisodeLine, scale: GifScale) -> Any:
     """Return the right picture: the believed outlines, the surer, the stronger, and the robot's believed place."""
-    image = _panel(scale, "beyond")
+    image = _picture(scale.size, "beyond")
     on = ImageDraw.Draw(image)
-    for fact in line["belief"]["facts"]:
-        match = SEGMENT.fullmatch(fact)
-        if match is None:
-            continue
-        east, north, to_east, to_north = (int(part) / 100 for part in match[3][1:].split(","))
-        if max(map(abs, (east, north, to_east, to_north))) > MAX_TABLE_SIDE:
-            continue
-        kind = "edge" if match[1] in ("floor", "verge") else "object"
-        strength = min(2, int(match[4]) * 3 // 100)
-        on.line(
-            [scale.robot(east, north), scale.robot(to_east, to_north)], COLOURS[f"{kind} {strength}"], 1 + strength // 2
-        )
-    place = line["belief"].get("place")
-    if isinstance(place, list) and len(place) == 2 and all(isinstance(v, int | float) for v in place):
-        east, north = place
-        _dot(on, scale.robot(east, north), COLOURS["place"])
+    for one in segments(line["belief"]["facts"]):
+        if max(map(abs, (*one.start, *one.end))) <= MAX_TABLE_SIDE:
+            kind, strength = "edge" if one.node in ("floor", "verge") else "object", min(2, one.confidence * 3 // 100)
+            ends = [scale.believed(*one.start), scale.believed(*one.end)]
+            on.line(ends, COLOURS[f"{kind} {strength}"], 1 + strength // 2)
+    if place := line["belief"].get("place"):
+        _dot(on, scale.believed(*place), COLOURS["place"])
     return image
 
 
@@ -172,7 +158,7 @@ def _dot(on: ImageDraw.ImageDraw, at: tuple[float, float], colour: int) -> None:
 
 def _fitting(text: str, font: Any, width: int) -> str:
     """Return a text without control characters, cut to a width in pixels."""
-    clean = escape_controls(text, lines=False)[:MAX_CAPTION_CHARACTERS]
+    clean = one_line(text)[:MAX_CAPTION_CHARACTERS]
     if font.getlength(clean) <= width:
         return clean
     fits = bisect_right(range(len(clean)), width, key=lambda size: font.getlength(clean[:size] + "..."))

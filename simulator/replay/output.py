@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.episode.episode import Episode, read_begun_episode
 from utak.simulator.episode.output_files import check_path, is_gif, write_whole
 from utak.simulator.replay.page import is_page, replay_page
@@ -20,7 +20,7 @@ def read_replayable(path: Path | str) -> Episode:
     for number, line in enumerate((episode.header, *episode.steps), 1):
         if not _is_shallow(line):
             what = f"values are nested more than {MAX_NESTING} deep: no viewer can show this episode"
-            raise BadInputError([Problem(str(path), SourceSpan(number, 1, 1), what)])
+            raise BadInputError.at(str(path), what, line=number)
     return episode
 
 
@@ -48,11 +48,6 @@ def write_page(
     page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name)
     write_whole(path, page.encode("utf-8"), is_page, PAGE_KIND, force)
     return lacking
-
-
-def check_page_path(path: Path | str, force: bool = False) -> None:
-    """Raise CannotOpenError unless a page can be written at a path; nothing is made or changed."""
-    check_path(path, is_page, PAGE_KIND, force)
 
 
 def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:

@@ -21,10 +21,13 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
+from utak.geometry.counts.retina import RETINA_ZONES
 from utak.simulator.episode.episode import Episode, EpisodeLine
 from utak.simulator.episode.output_files import after_prologue
+from utak.simulator.replay.drawing import rectangles
 from utak.simulator.replay.events import episode_events
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.terminal.action_in_words import truth_in_words
+from utak.simulator.terminal.streams import one_line
 
 LOADER = ("loader.js",)  # the script that stands in a page as it is
 # The scripts that stand in it deflated, in the order in which they need one another.
@@ -39,7 +42,7 @@ def replay_page(
     """Return an episode as a page of HTML that plays it."""
     if not episode.steps:
         raise ValueError("an episode without a step cannot be replayed")
-    loader, player = (_script(names) for names in (LOADER, PLAYER))
+    loader, player = _script(LOADER), _script(PLAYER, f"const RETINA_ZONES = {json.dumps(RETINA_ZONES)};")
     style, shell = _part("style.css"), Template(_part("body.html"))
     body = shell.substitute(
         heading=html.escape(": ".join(filter(None, (_clipped(name), _goals(episode))))) or "no goal",
@@ -94,7 +97,7 @@ def _index(episode: Episode, trees: Mapping[int, Sequence[Any]]) -> dict[str, An
         "result": slim(episode.result),
         "utak": [line["utak"] for line in episode.steps],
         "place": [slim(belief.get("place")) for belief in beliefs],
-        "anew": [step for step, belief in enumerate(beliefs) if isinstance(belief.get("seen_from"), list)],
+        "anew": [step for step, belief in enumerate(beliefs) if "seen_from" in belief],
         "events": episode_events(episode),
         "bounds": _bounds(episode.steps),
         "trees": {step: slim(list(told)) for step, told in trees.items()},
@@ -103,11 +106,8 @@ def _index(episode: Episode, trees: Mapping[int, Sequence[Any]]) -> dict[str, An
 
 def _bounds(lines: Sequence[EpisodeLine]) -> list[int] | None:
     """Return the least east and north, and the greatest, of all rectangles, in hundredths of squares, robot frame."""
-    boxes = []
-    for fact in {fact for line in lines for fact in line["belief"]["facts"] if fact.startswith("rect(")}:
-        name, *parts = fact[len("rect(") : -len(").")].split(",")
-        if name != "verge" and len(parts) == 4 and all(re.fullmatch(r"-?[0-9]{1,9}", part) for part in parts):
-            boxes.append([int(part) for part in parts])
+    known = rectangles({fact for line in lines for fact in line["belief"]["facts"]})
+    boxes = [box for name, box in known if name != "verge"]
     if not boxes:
         return None
     west, south, east, north = zip(*boxes, strict=True)
@@ -119,11 +119,11 @@ def _part(name: str) -> str:
     return (files(__package__) / "page_parts" / name).read_text(encoding="utf-8")
 
 
-def _script(names: Sequence[str]) -> str:
-    """Return some scripts as one, whose names no other script sees, without indentation and lines of comments."""
+def _script(names: Sequence[str], first: str = "") -> str:
+    """Return some scripts as one after a first line: no other script sees its names; without indents and comments."""
     lines = [line.strip() for name in names for line in _part(name).splitlines()]
     bare = "\n".join(line for line in lines if line and not line.startswith("//"))
-    return f'"use strict";\n(() => {{\n{bare}\n}})();\n'
+    return f'"use strict";\n(() => {{\n{first}\n{bare}\n}})();\n'
 
 
 def _hash(text: str) -> str:
@@ -132,12 +132,10 @@ def _hash(text: str) -> str:
 
 
 def _goals(episode: Episode) -> str:
-    """Return the goals of an episode in a line."""
     return _clipped(", ".join(episode.header["task"]["goals"]))
 
 
 def _about(episode: Episode) -> str:
-    """Return the options and the end of an episode in a line."""
     options = episode.header["options"]
     told = [f"seed {options['seed']}", f"noise {options['noise']:g}", f"paths {options['paths']}"]
     told += ["no pull"] if options.get("pull") is False else []
@@ -146,11 +144,11 @@ def _about(episode: Episode) -> str:
     if episode.result is None:
         return f"{', '.join(told)}; the episode was cut short after step {len(episode.steps) - 1}"
     result = episode.result
-    truth = {None: "", True: ", achieved", False: ", not achieved"}[result["achieved"]]
+    truth = truth_in_words(result["achieved"])
     return f"{', '.join(told)}; {result['verdict']} in {result['steps']} steps{truth}: {_clipped(result['reason'])}"
 
 
 def _clipped(text: str) -> str:
     """Return a text on one line, without control characters, cut where it is very long."""
-    clean = escape_controls(text, lines=False)
+    clean = one_line(text)
     return clean if len(clean) <= MAX_TITLE_CHARACTERS else clean[:MAX_TITLE_CHARACTERS] + " ..."

@@ -6,21 +6,21 @@ from utak.kb.language.diagnostics import BadInputError
 from utak.kb.world.stated_plan import stated_plan
 from utak.simulator.episode.episode import Episode
 from utak.simulator.replay.changes import changes
-from utak.simulator.run.recorded_story import RecordedStory
-from utak.simulator.terminal.action_in_words import describe
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.run.story import recorded_story
+from utak.simulator.terminal.action_in_words import end_in_words, step_in_words
+from utak.simulator.terminal.streams import escape_controls, one_line
 
 MAX_LISTED_FACTS = 40  # facts of one kind of change that a step lists; a convention
 
 
 def transcript(name: str, episode: Episode) -> Iterator[str]:
     """Yield the text of each step of an episode, and of its end."""
-    story = RecordedStory(name, episode)
+    story = recorded_story(name, episode)
     before: list[str] | None = None
     planned: list[str] = []
     while True:
-        line, facts = story.line, [_clean(fact) for fact in story.line["belief"]["facts"]]
-        head = f"step {line['step']}: {describe(line['action'])}: {_clean(line['why'])}"
+        line, facts = story.line, [one_line(fact) for fact in story.line["belief"]["facts"]]
+        head = step_in_words(line)
         plan = _plan(facts)
         told = [f"plan as before: {plan[0]}"] if plan and plan == planned else plan  # or that there is none, as before
         yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *told, *_changes(before, facts), "", ""])
@@ -30,7 +30,7 @@ def transcript(name: str, episode: Episode) -> Iterator[str]:
     if episode.result is None:
         yield "the episode was cut short here\n"
     else:
-        yield f"{episode.result['verdict']} after {episode.result['steps']} steps: {_clean(episode.result['reason'])}\n"
+        yield f"{end_in_words(episode.result)}\n"
 
 
 def _plan(facts: list[str]) -> list[str]:
@@ -38,8 +38,8 @@ def _plan(facts: list[str]) -> list[str]:
     try:
         plan = stated_plan(facts)
     except BadInputError as bad:
-        return [f"the facts of the plan are damaged: {_clean(bad.problems[0].what)}"]
-    lines = [] if plan is None else [_clean(line) for line in plan.lines()]
+        return [f"the facts of the plan are damaged: {one_line(bad.problems[0].what)}"]
+    lines = [] if plan is None else [one_line(line) for line in plan.lines()]
     steps = [line for line in lines if line.startswith((">", " "))]
     return [*steps, *(line for line in lines if line not in steps)]
 
@@ -62,8 +62,3 @@ def _listed(rows: list[str], word: str) -> Iterator[str]:
     yield from rows[:MAX_LISTED_FACTS]
     if len(rows) > MAX_LISTED_FACTS:
         yield f"... {len(rows) - MAX_LISTED_FACTS} more {word}"
-
-
-def _clean(text: str) -> str:
-    """Return a text of an episode on one line, without control characters."""
-    return escape_controls(text, lines=False)

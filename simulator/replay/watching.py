@@ -5,13 +5,10 @@ import sys
 from typing import TYPE_CHECKING
 
 from utak.simulator.scenario.picture import draw
-from utak.simulator.terminal.action_in_words import describe
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.terminal.action_in_words import TRUE_TABLE_NOTICE, step_in_words
 
 if TYPE_CHECKING:
     from utak.simulator.run.session import Session
-
-TRUE_TABLE = "the true table, which the robot may believe to be otherwise:"
 
 
 class TableWatch:
@@ -27,27 +24,20 @@ class TableWatch:
         if line["step"] == self._step:
             return
         self._step = line["step"]
-        picture = draw(table.world, table.polygons, table.utak).splitlines()
-        rows = [TRUE_TABLE, *picture, step_in_words(line)]
+        picture = draw(table.now).splitlines()
+        rows = [TRUE_TABLE_NOTICE, *picture, step_in_words(line)]
         width, height = _room()
         if len(rows) >= height or max(map(len, picture)) >= width:
             print("\n".join(rows), file=sys.stderr)
             return
-        if self._rows:
-            _erase(self._rows)
+        if self._rows and hasattr(sys.stderr, "erase_rows"):  # move up, and erase what is below
+            sys.stderr.erase_rows(self._rows)
         rows = [row if len(row) < width else row[: width - 4] + "..." for row in rows]
         print("\n".join(rows), file=sys.stderr, flush=True)
         self._rows = len(rows)
 
 
-def step_in_words(line: dict[str, object]) -> str:
-    """Return a step of an episode in one line: its number, its action and its reason."""
-    why = escape_controls(str(line["why"]), lines=False)
-    return f"step {line['step']}: {describe(line['action'])}: {why}"  # type: ignore[arg-type]
-
-
 def _room() -> tuple[int, int]:
-    """Return columns and rows of the terminal on the standard error; (0, 0) where nothing can be drawn in place."""
     if not sys.stderr.isatty() or os.environ.get("TERM", "") in ("", "dumb"):
         return 0, 0
     try:
@@ -55,10 +45,3 @@ def _room() -> tuple[int, int]:
     except (OSError, ValueError):
         return 0, 0
     return size.columns, size.lines
-
-
-def _erase(rows: int) -> None:
-    """Move the cursor up by some rows and erase what is below."""
-    erase = getattr(sys.stderr, "erase_rows", None)
-    if erase is not None:
-        erase(rows)

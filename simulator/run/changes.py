@@ -3,16 +3,19 @@
 import shutil
 import tempfile
 import weakref
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from utak.kb.language.diagnostics import BadInputError, did_you_mean
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.reasoning.assumptions import ASSUMPTION_FILE, Assumption, canonical_facts, read_assumptions
 from utak.kb.task.task import Task, task_with_goals
 from utak.simulator.episode.episode import EpisodeLine
+from utak.simulator.scenario.scenario import Scenario
+from utak.simulator.scenario.settings import Settings
 
 CHANGE_KINDS = ("assume", "retract", "goal")  # as commands of `utak repl` and episodes name them
 
@@ -32,24 +35,30 @@ class Change:
 
 
 class RunConditions(NamedTuple):
-    """The conditions that count at a step besides the scenario."""
+    """The conditions that count at a step."""
 
-    assumptions: tuple[Assumption, ...]  # what is assumed, in the order in which it was assumed
-    task: Task  # the task; its goals may be others than those of the scenario
-    is_changed_task: bool = False  # whether the goals are others than those of the scenario
+    scenario: Scenario  # the world and the task
+    settings: Settings  # the options
+    assumptions: tuple[Assumption, ...] = ()  # what is assumed, in the order in which it was assumed
+
+    @property
+    def task(self) -> Task:
+        """The task that counts."""
+        return self.scenario.task
 
 
-def changed_conditions(before: RunConditions, change: Change, kb_files: Sequence[str]) -> RunConditions:
-    """Return the conditions after a change."""
+def changed_conditions(before: RunConditions, change: Change) -> RunConditions:
+    """Return the conditions after a change. Nothing is expected of the truth when the goals are others."""
     if change.kind == "goal":
         source = source_from_bytes("goal", _ended(change.text).encode("utf-8", errors="surrogateescape"))
-        return before._replace(task=task_with_goals(before.task, source), is_changed_task=True)
+        task = task_with_goals(before.task, source)
+        return before._replace(scenario=replace(before.scenario, task=task, expectations=None))
     if change.kind == "retract":
         return before._replace(assumptions=_without(before.assumptions, change.text))
     assumptions = before.assumptions
-    for new in read_assumptions(change.text, kb_files):
+    for new in read_assumptions(change.text, before.settings.kb_files):
         if any(old.written == new.written for old in assumptions):
-            raise _problem(ASSUMPTION_FILE, new.written, f"this is assumed already: {new.written}")
+            raise BadInputError.about(ASSUMPTION_FILE, new.written, f"this is assumed already: {new.written}")
         assumptions = (*assumptions, new)
     return before._replace(assumptions=assumptions)
 
@@ -66,19 +75,14 @@ def _without(assumptions: tuple[Assumption, ...], text: str) -> tuple[Assumption
     if any(one.written == whole for one in assumptions):
         return tuple(one for one in assumptions if one.written != whole)
     if not assumptions:
-        raise _problem("retract", whole, "nothing is assumed here")
+        raise BadInputError.about("retract", whole, "nothing is assumed here")
     named = canonical_facts(text, "retract")
     written = {one.written for one in assumptions}
     for fact in named:
         if fact not in written:
             hint = did_you_mean(fact, written) or f"assumed: {' '.join(sorted(written))}"
-            raise _problem("retract", whole, f"this is not assumed: {fact}", hint)
+            raise BadInputError.about("retract", whole, f"this is not assumed: {fact}", hint)
     return tuple(one for one in assumptions if one.written not in named)
-
-
-def _problem(file: str, text: str, what: str, hint: str = "") -> BadInputError:
-    """Return, not raise, the error `what` about a text of one line."""
-    return BadInputError([Problem(file, SourceSpan(1, 1, max(1, len(text))), what, text, hint)])
 
 
 class AssumedRules:
@@ -103,9 +107,13 @@ class AssumedRules:
             self._paths[rule] = str(path)
         return self._paths[rule]
 
-    def named_as_typed(self, bad: BadInputError) -> BadInputError:
-        """Return an error with the problems of these files told of an assumption, not of a file."""
-        own = set(self._paths.values())
-        return BadInputError(
-            problem._replace(file=ASSUMPTION_FILE) if problem.file in own else problem for problem in bad.problems
-        )
+    @contextmanager
+    def errors_as_typed(self) -> Iterator[None]:
+        """Let errors in these files, in a `with` block, name the assumption that was typed, not a file."""
+        try:
+            yield
+        except BadInputError as bad:
+            own = set(self._paths.values())
+            raise BadInputError(
+                problem._replace(file=ASSUMPTION_FILE) if problem.file in own else problem for problem in bad.problems
+            ) from None

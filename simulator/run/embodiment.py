@@ -1,6 +1,8 @@
 """The only bridge between robot and world: commands go in, impressions come out, nothing else passes."""
 
-from utak.kb.body import Command, Grasp, Impression, Move, Push, Release, Turn
+from dataclasses import astuple
+
+from utak.kb.body import Command, Impression
 from utak.simulator.world.physics import Tabletop
 
 
@@ -21,15 +23,5 @@ class Embodiment:
 
 
 def carry_out(table: Tabletop, command: Command) -> None:
-    """Execute one command on a table, as far as the world allows."""
-    match command:
-        case Move(east, north):
-            table.move(east, north)
-        case Push(east, north):
-            table.push(east, north)
-        case Turn(degrees):
-            table.turn(degrees)
-        case Grasp(direction):
-            table.grasp(direction)
-        case Release():
-            table.release()
+    """Execute one command on a table, as far as the world allows: the table has a method of each command's name."""
+    getattr(table, type(command).__name__.lower())(*astuple(command))

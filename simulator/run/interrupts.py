@@ -7,15 +7,6 @@ from contextlib import contextmanager
 from types import FrameType
 
 
-class InterruptCount:
-    """The number of times that Ctrl-C was pressed in a block; true when it was pressed at all."""
-
-    times = 0  # the number
-
-    def __bool__(self) -> bool:
-        return self.times > 0
-
-
 @contextmanager
 def end_at_request() -> Iterator[None]:
     """Let SIGTERM raise KeyboardInterrupt in a `with` block, so that all is cleaned up; then end by SIGTERM."""
@@ -41,18 +32,19 @@ def end_at_request() -> Iterator[None]:
 
 
 @contextmanager
-def defer_interrupt(tell: Callable[[], object]) -> Iterator[InterruptCount]:
-    """Hold back the first Ctrl-C until the end of a `with` block."""
+def defer_interrupt(tell: Callable[[], object]) -> Iterator[list[int]]:
+    """Hold back the first Ctrl-C until the end of a `with` block; yield the list of those that came in it."""
     # The second Ctrl-C raises KeyboardInterrupt in the block.
-    pressed, before = InterruptCount(), signal.getsignal(signal.SIGINT)
+    pressed: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
         yield pressed
         return
     handler: Callable[[int, FrameType | None], object] = before
 
     def keep(number: int, frame: FrameType | None) -> None:
-        pressed.times += 1
-        if pressed.times > 1:
+        pressed.append(number)
+        if len(pressed) > 1:
             handler(number, frame)
         tell()
 

@@ -4,10 +4,11 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from copy import deepcopy
 from dataclasses import dataclass, field
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol
 
-from utak.kb.body import Body, Command, Impression
+from utak.kb.body import Body, Command
 from utak.kb.task.task import Task
+from utak.planner.decision import StepReport, TaskVerdict, Verdict
 from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
 from utak.simulator.episode.record import action_entry, header, motion_entry
 from utak.simulator.run.embodiment import Embodiment
@@ -20,49 +21,13 @@ from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.world import outer_ring
 
 
-class StepReportProtocol(Protocol):
-    """The robot's report after an impression."""
-
-    @property
-    def command(self) -> Command | None:
-        """The command before the impression; None on waking."""
-
-    @property
-    def impression(self) -> Impression:
-        """The impression that the body returned."""
-
-    @property
-    def belief(self) -> dict[str, Any]:
-        """The world model as JSON values."""
-
-    @property
-    def why(self) -> str:
-        """The reason for the command."""
-
-
-class VerdictProtocol(Protocol):
-    """The robot's verdict at the end."""
-
-    @property
-    def believed(self) -> bool:
-        """Whether the robot believes that the task is done."""
-
-    @property
-    def verdict(self) -> str:
-        """The kind of verdict: done, impossible, possible_if or limit."""
-
-    @property
-    def reason(self) -> str:
-        """The reason in words."""
-
-
 class RobotProtocol(Protocol):
     """A robot: given a body and a task, it wakes and then takes one step after the other."""
 
-    def wake(self) -> StepReportProtocol:
+    def wake(self) -> StepReport:
         """Take the first impression and return the report on it."""
 
-    def step(self) -> StepReportProtocol:
+    def step(self) -> StepReport:
         """Choose a command, act and return the report; without a command when the run ends."""
 
     @property
@@ -70,24 +35,12 @@ class RobotProtocol(Protocol):
         """Whether the robot has a verdict."""
 
     @property
-    def verdict(self) -> VerdictProtocol:
+    def verdict(self) -> Verdict:
         """The verdict at the end."""
 
 
-@runtime_checkable
-class FollowingRobotProtocol(Protocol):
-    """A robot that takes commands from outside."""
-
-    def follow(self, command: Command, why: str) -> StepReportProtocol:
-        """Give a command that comes from outside, act and return the report."""
-
-
-@runtime_checkable
-class AdoptingRobotProtocol(Protocol):
-    """A robot that takes another task and other options while it runs."""
-
-    def adopt(self, task: Task, settings: Settings) -> StepReportProtocol:
-        """Interpret the newest impression anew, as if task and options were these; return the new report on it."""
+class RunNotRepeatedError(Exception):
+    """A run was repeated, and a step came out otherwise: a mind, or what it uses, is not deterministic."""
 
 
 class CannotAdoptError(Exception):
@@ -123,15 +76,6 @@ class Result:
         return {"result": values | ({"idle_rules": list(self.idle_rules)} if self.idle_rules else {})}
 
 
-@dataclass(frozen=True)
-class _LimitVerdict:
-    """The verdict of a run that ended before the robot had one. reason : why, in words."""
-
-    reason: str
-    believed: bool = False
-    verdict: str = "limit"
-
-
 class Session:
     """A run that is advanced step by step."""
 
@@ -153,9 +97,11 @@ class Session:
 
     def adopt(self, scenario: Scenario, settings: Settings) -> EpisodeLine:
         """Go on from the present step with another scenario in the same world, and with other options."""
-        if not isinstance(self.robot, AdoptingRobotProtocol):
+        # Robots that adopt interpret the newest impression anew, as if task and options had been these.
+        adopt: Callable[[Task, Settings], StepReport] | None = getattr(self.robot, "adopt", None)
+        if adopt is None:
             raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
-        report = self.robot.adopt(scenario.task, settings)
+        report = adopt(scenario.task, settings)
         self.table.disturb(settings.noise, settings.seed if settings.seed != self.settings.seed else None)
         self.scenario, self.settings = scenario, settings
         self.line = self.line | {"belief": report.belief, "why": report.why}
@@ -173,6 +119,13 @@ class Session:
             report = self.robot.step()
         return self.line if report.command is None else self._record(report)
 
+    def follow(self, command: Command, why: str) -> EpisodeLine:
+        """Let the robot give a command that comes from outside, write what happened, and return the line."""
+        follow: Callable[[Command, str], StepReport] | None = getattr(self.robot, "follow", None)
+        if follow is None:
+            raise TypeError("this robot takes no commands from outside")
+        return self._record(follow(command, why))
+
     @property
     def finished(self) -> bool:
         """Whether the robot has a verdict."""
@@ -180,7 +133,7 @@ class Session:
 
     def end(self, limit: TimeLimit | None = None, within: bool = False) -> Result:
         """Compare the verdict with the truth, write the result and return it."""
-        verdict: VerdictProtocol = self.robot.verdict if limit is None else self._verdict_of(limit, within)
+        verdict: Verdict = self.robot.verdict if limit is None else self._verdict_of(limit, within)
         expected = self.scenario.expectations or ()
         if not self._track:  # the robot did not wake in time
             self._track.append(Snapshot(0, self.table.utak, dict(self.table.polygons)))
@@ -197,48 +150,36 @@ class Session:
         return result
 
     def run(self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None) -> Result:
-        """Run from waking to the end, and return the result."""
+        """Run from waking, or from the present step, to the end, and return the result."""
         if limit is not None:
             limit.begin()
         try:
-            self.wake(limit)
+            if not self._track:
+                self.wake(limit)
+                watch(self)
+            while not self.finished:
+                if limit is not None and self._log.is_repeating:
+                    limit.begin()
+                elif limit is not None and limit.is_over:
+                    return self.end(limit)
+                self.step(limit)
+                watch(self)
         except TimeOver:
             return self.end(limit, within=True)
-        watch(self)
-        return self._to_the_end(watch, limit)
-
-    def go_on(
-        self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None
-    ) -> Result:
-        """Run from the present step to the end, and return the result."""
-        if limit is not None:
-            limit.begin()
-        return self._to_the_end(watch, limit)
-
-    def _to_the_end(self, watch: Callable[["Session"], None], limit: TimeLimit | None) -> Result:
-        """Take steps until there is a verdict or the time is over, and return the result."""
-        while not self.finished:
-            if limit is not None and self._log.is_repeating:
-                limit.begin()
-            elif limit is not None and limit.is_over:
-                return self.end(limit)
-            try:
-                self.step(limit)
-            except TimeOver:
-                return self.end(limit, within=True)
-            watch(self)
         return self.end()
 
     def _cutting(self, limit: TimeLimit | None) -> AbstractContextManager[None]:
         """Return what raises TimeOver in a block; nothing does while the episode that is resumed is repeated."""
         return nullcontext() if limit is None or self._log.is_repeating else limit.cutting()
 
-    def _verdict_of(self, limit: TimeLimit, within: bool) -> "_LimitVerdict":
+    def _verdict_of(self, limit: TimeLimit, within: bool) -> Verdict:
         """Return the verdict of a run that a limit of time ends; `within` a step or between two."""
         decision = None if within else getattr(self.robot, "decision", None)
         coming = "" if decision is None else f"; the next command would be: {decision.why}"
         coming = "; the time was over within a step, which does not count" if within else coming
-        return _LimitVerdict(f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}")
+        return Verdict(
+            False, TaskVerdict.LIMIT, f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}"
+        )
 
     def fork(self) -> "Session":
         """Return a copy of this run that goes on by itself and writes no episode; this run is not changed."""
@@ -246,8 +187,7 @@ class Session:
         nothing = EpisodeLog(None)
         return deepcopy(self, {id(self._log): nothing, id(self.scenario): self.scenario, id(nothing): nothing})
 
-    def _record(self, report: StepReportProtocol) -> EpisodeLine:
-        """Write a step and return its line."""
+    def _record(self, report: StepReport) -> EpisodeLine:
         table, number = self.table, len(self._track)
         self._track.append(Snapshot(number, table.utak, dict(table.polygons)))
         self.line = {

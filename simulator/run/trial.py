@@ -13,7 +13,7 @@ from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Result, RobotMaker, Session
 from utak.simulator.scenario.expectation import expects_verdict, read_expectations, weights_of
 from utak.simulator.scenario.points import ExpectationOutcome, PointScore, score
-from utak.simulator.scenario.scenario import Scenario, read_scenario
+from utak.simulator.scenario.scenario import Scenario, collect_problems, read_scenario
 from utak.simulator.scenario.settings import Settings, kb_files_named
 from utak.simulator.scenario.trialfile import TRIAL_FILE, TrialPlan, answers_as_wanted, query_of, read_trial_plan
 from utak.simulator.scenario.untrusted import refuse_outside_links
@@ -26,7 +26,6 @@ class ScenarioTrial(NamedTuple):
     """The outcome of a scenario's test."""
 
     passed: bool  # whether the test passed
-    message: str  # the reasons, and the verdict
     result: Result  # the end of the run
     settings: Settings  # the options of the run
     faults: tuple[str, ...]  # the reasons why it failed, in words; () when it passed
@@ -64,22 +63,13 @@ def run_trial(
     outcomes = (*result.outcomes, *_answers(plan, facts_of_line(session.line), rules))
     assert scenario.expectations is not None
     faults = tuple(faults_of(result, outcomes, expects_verdict(scenario.expectations)))
-    end = f"{result.verdict} in {result.steps} steps: {result.reason}"
     weighed = _is_weighed(scenario.expectations, plan)
-    message = "; ".join([*faults, end])
-    return ScenarioTrial(not faults, message, result, settings, faults, outcomes, weighed, tuple(last_steps))
+    return ScenarioTrial(not faults, result, settings, faults, outcomes, weighed, tuple(last_steps))
 
 
-class PromisedPoints(NamedTuple):
-    """The points of a scenario that could not be run."""
-
-    score: PointScore  # none earned, of those that its files promise
-    weighed: bool  # whether the scenario's author weighed them
-
-
-def promised_points(folder: Path | str, root: Path | str | None = None) -> PromisedPoints | None:
-    """Return the points that expect.lp and trial.lp of a scenario promise; None where these cannot be read."""
-    # None to follow them.
+def promised_points(folder: Path | str, root: Path | str | None = None) -> dict[str, Any]:
+    """Return `points` and `weighed` for the record of a scenario that was not run; {} where they cannot be read."""
+    # root : the folder that links must not lead out of; None to follow them.
     expect, trial = Path(folder) / "expect.lp", Path(folder) / TRIAL_FILE
     try:
         for file in (expect, trial) if root is not None else ():
@@ -87,9 +77,9 @@ def promised_points(folder: Path | str, root: Path | str | None = None) -> Promi
         facts = read_expectations(expect, None)
         plan = read_trial_plan(trial) if trial.exists() else NO_PLAN
     except (BadInputError, CannotOpenError):
-        return None
+        return {}
     possible = sum(weights_of(facts).values()) + sum(plan.asks.values())
-    return PromisedPoints(PointScore(0, possible), _is_weighed(facts, plan))
+    return {"points": PointScore(0, possible)._asdict(), "weighed": _is_weighed(facts, plan)}
 
 
 def _is_weighed(expectations: Sequence[Fact], plan: TrialPlan) -> bool:
@@ -100,20 +90,13 @@ def _is_weighed(expectations: Sequence[Fact], plan: TrialPlan) -> bool:
 def _read(folder: Path) -> tuple[Scenario, TrialPlan]:
     """Return a scenario that has an expect.lp, and what its trial.lp says; raise the errors of all files at once."""
     problems: list[Problem] = []
-    scenario, plan = None, NO_PLAN
-    try:
-        scenario = read_scenario(folder)
-        if scenario.expectations is None:
-            what = "a test needs expect.lp, which is missing"
-            problems.append(Problem(str(folder / "expect.lp"), SourceSpan(1, 1, 1), what))
-    except BadInputError as bad:
-        problems += bad.problems
-    try:
-        if (folder / TRIAL_FILE).exists():
-            plan = read_trial_plan(folder / TRIAL_FILE)
-    except BadInputError as bad:
-        problems += bad.problems
-    if problems or scenario is None:
+    scenario = collect_problems(problems, lambda: read_scenario(folder))
+    if scenario is not None and scenario.expectations is None:
+        what = "a test needs expect.lp, which is missing"
+        problems.append(Problem(str(folder / "expect.lp"), SourceSpan(1, 1, 1), what))
+    trial = folder / TRIAL_FILE
+    plan = collect_problems(problems, lambda: read_trial_plan(trial)) if trial.exists() else NO_PLAN
+    if problems or scenario is None or plan is None:
         raise BadInputError(problems)
     return scenario, plan
 
@@ -122,24 +105,18 @@ def _answers(plan: TrialPlan, facts: Sequence[str], rules: Sequence[str]) -> Ite
     """Yield the outcome of each question of trial.lp, asked of the world model at the end."""
     if not plan.asks:
         return
-    from utak.kb.reasoning.query import QueryEngine  # only where something is asked: it takes time
+    from utak.kb.reasoning.query import QueryEngine, QueryLimitError  # only where something is asked: it takes time
 
     with QueryEngine(rules=rules) as engine:
         for asked, points in plan.asks.items():
-            yield ExpectationOutcome(str(asked), _answer(engine, asked, facts), points)
-
-
-def _answer(engine: Any, asked: Fact, facts: Sequence[str]) -> str:
-    """Return '' when a question has the wanted answer, else its answer in words."""
-    from utak.kb.reasoning.query import QueryLimitError
-
-    try:
-        found = engine.ask(facts, query_of(asked))
-    except QueryLimitError as limit:
-        return str(limit)
-    except BadInputError as bad:
-        return f"the question cannot be answered: {bad.problems[0].what}"
-    return answers_as_wanted(asked, found.kind, found.rows, found.more)
+            try:
+                found = engine.ask(facts, query_of(asked))
+                came = answers_as_wanted(asked, found.kind, found.rows, found.more)
+            except QueryLimitError as limit:
+                came = str(limit)
+            except BadInputError as bad:
+                came = f"the question cannot be answered: {bad.problems[0].what}"
+            yield ExpectationOutcome(str(asked), came, points)
 
 
 def faults_of(result: Result, outcomes: Sequence[ExpectationOutcome], verdict_expected: bool) -> Iterator[str]:

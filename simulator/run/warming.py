@@ -175,7 +175,7 @@ def sightlines() -> None:
 
 
 def many_routes() -> None:
-    """Call the kernels that find several routes, and the shortest of all."""
+    """Call the kernels that find several routes and the shortest of all, and those of a skeleton that is a ring."""
     import numpy as np
 
     free = np.ones((9, 12), np.bool_)
@@ -183,16 +183,9 @@ def many_routes() -> None:
     screen = Screen(free)
     screen.routes((0.5, 4.5), (11.5, 4.5), k=4)
     screen.shortest((0.5, 4.5), (11.5, 4.5))
-
-
-def rings() -> None:
-    """Call the kernels that follow a skeleton that is a ring, and put it into arrays."""
-    import numpy as np
-
-    free = np.zeros((9, 9), np.bool_)
-    free[1:8, 1:8] = True
-    free[2:7, 2:7] = False
-    assert Screen(free).pathgraph_arrays
+    free[1:8, 1:11], free[2:7, 2:10] = True, False
+    free[[0, 8]], free[:, [0, 11]] = False, False
+    assert Screen(free).pathgraph_arrays and Screen(free).skeleton.any()
 
 
 def move() -> None:
@@ -272,7 +265,7 @@ PROCESS_SPLIT: dict[bool, tuple[tuple[Use, ...], ...]] = {
 
 
 # What few runs need: compiled by `utak warm`, else when it is called.
-RARE_USES: tuple[Use, ...] = (sightlines, many_routes, rings)
+RARE_USES: tuple[Use, ...] = (sightlines, many_routes)
 # The kernel of each use that takes longest to compile, as numba's cache names it. When it is in the cache, the use is
 # taken for compiled.
 LONGEST_KERNEL = {

@@ -8,11 +8,10 @@ import shapely
 
 from utak.kb.language.arguments import decimal_value
 from utak.kb.language.diagnostics import BadInputError, Problem
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.source_text import read_source
 from utak.kb.language.terms import Fact, Text
-from utak.kb.language.vocabulary import ROBOT
-from utak.kb.language.wkt import parse_wkt
-from utak.simulator.scenario.expectation import EXPECTATION_TOLERANCE
+from utak.simulator.scenario.expectation import EXPECTATION_TOLERANCE, region_of
 from utak.simulator.scenario.scenario import Scenario
 from utak.simulator.scenario.trialfile import TRIAL_FILE, query_of, read_trial_plan
 from utak.simulator.world.world import World
@@ -41,7 +40,7 @@ def _unattainable(fact: Fact, world: World) -> str:
     """Return why an expectation about a region is hardly meant, in words; '' where it may be."""
     if fact.name not in ("inside", "near", "visits", "avoids") or not isinstance(fact.args[1], Text):
         return ""
-    region, table = parse_wkt(fact.args[1].value), shapely.box(0, 0, world.width, world.height)
+    region, table = region_of(fact), shapely.box(0, 0, world.width, world.height)
     allowed = float(decimal_value(fact.args[2])) if fact.name == "near" else EXPECTATION_TOLERANCE
     if region.distance(table) > allowed:
         return "the region lies off the table"

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,11 +10,11 @@ from typing import Any, NamedTuple
 import shapely
 from shapely.affinity import rotate, translate
 
-from utak.kb.language.arguments import abbreviated, decimal_value
+from utak.kb.language.arguments import abbreviated, decimal_value, text_value
 from utak.kb.language.diagnostics import BadInputError, Problem, did_you_mean
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import Source, read_source
-from utak.kb.language.terms import Fact, Number, Symbol, Term, Text
+from utak.kb.language.terms import Fact, Symbol, Term
 from utak.kb.language.vocabulary import EXPECTATION_VOCABULARY, check_facts
 from utak.kb.language.wkt import parse_wkt
 from utak.simulator.scenario.trialfile import TRIAL_FILE
@@ -25,6 +26,7 @@ MIN_CIRCLING_DEGREES = 330.0  # degrees of winding that count as once around (do
 THING_ARGUMENT_INDEX = {"inside": 0, "near": 0, "visits": 0, "avoids": 0, "circles": 1, "unmoved": 0, "pose": 0}
 WALKER_EXPECTATIONS = ("inside", "near", "visits", "avoids")  # those whose thing may be the robot itself
 MAX_NAMES_SHOWN = 12  # names of things that a hint lists; a convention
+MAX_KEPT_REGIONS = 256  # regions of expectations that were read, so that a halt of a play costs little; a convention
 NOT_ABOUT_THE_TRUTH = ("fails", "weight")  # facts of expect.lp that the truth at the end does not decide
 
 
@@ -161,22 +163,28 @@ def shortfalls(
     return found
 
 
+@lru_cache(MAX_KEPT_REGIONS)
 def region_of(fact: Fact) -> Any:
     """Return the shape in a fact's second argument."""
-    term = fact.args[1]
-    assert isinstance(term, Text)
-    return parse_wkt(term.value)
+    region = parse_wkt(text_value(fact.args[1]))
+    shapely.prepare(region)
+    return region
+
+
+@lru_cache(MAX_KEPT_REGIONS)
+def grown_region(fact: Fact) -> Any:
+    """Return the region in a fact's second argument, with the tolerance within which a thing is `inside`."""
+    region = region_of(fact).buffer(EXPECTATION_TOLERANCE)
+    shapely.prepare(region)
+    return region
 
 
 def number_of(fact: Fact) -> int:
     """Return the number in a fact's last argument."""
-    term = fact.args[-1]
-    assert isinstance(term, Number)
-    return term.value
+    return int(decimal_value(fact.args[-1]))
 
 
 def _thing(fact: Fact, snapshot: Snapshot) -> Any:
-    """Return the outline of the named thing, or Utak's point."""
     name = str(fact.args[0])
     return shapely.Point(snapshot.utak) if name == "utak" else snapshot.polygons[name]
 
@@ -189,7 +197,7 @@ def _place(fact: Fact, snapshot: Snapshot) -> str:
 
 def _inside(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when all of the thing is in the region at the end, else where it is."""
-    region, thing = with_tolerance(region_of(fact)), _thing(fact, track[-1])
+    region, thing = grown_region(fact), _thing(fact, track[-1])
     if region.covers(thing):
         return ""
     away = thing.distance(region)
@@ -200,9 +208,9 @@ def _inside(fact: Fact, track: Sequence[Snapshot]) -> str:
 def _near(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when the thing is near enough to the shape at the end, else how far away it is."""
     thing = _thing(fact, track[-1])
-    if is_near(fact, thing):
-        return ""
     away = thing.distance(region_of(fact))
+    if away <= decimal_value(fact.args[2]) + EXPECTATION_TOLERANCE:
+        return ""
     return f"{_place(fact, track[-1])} at the end, {away:.2f} squares away from it"
 
 
@@ -250,24 +258,10 @@ def winding(track: Sequence[Snapshot], name: str) -> float:
     """Return by how many degrees Utak's track winds around the centre of a thing, counter-clockwise positive."""
     total = 0.0
     for before, after in pairwise(track):
-        total += winding_of_step(before.utak, after.utak, after.polygons[name].centroid)
+        centre = after.polygons[name].centroid
+        start, end = (math.atan2(y - centre.y, x - centre.x) for x, y in (before.utak, after.utak))
+        total += (math.degrees(end - start) + 180.0) % 360.0 - 180.0
     return total
-
-
-def winding_of_step(start: tuple[float, float], end: tuple[float, float], centre: Any) -> float:
-    """Return by how many degrees a straight step winds around a point, counter-clockwise positive: -180 to 180."""
-    before, after = (math.atan2(y - centre.y, x - centre.x) for x, y in (start, end))
-    return (math.degrees(after - before) + 180.0) % 360.0 - 180.0
-
-
-def is_near(fact: Fact, thing: Any) -> bool:
-    """Return whether a thing is as near to the shape of an expectation `near` as it says."""
-    return bool(thing.distance(region_of(fact)) <= decimal_value(fact.args[2]) + EXPECTATION_TOLERANCE)
-
-
-def with_tolerance(region: Any) -> Any:
-    """Return a region within which a thing is `inside`."""
-    return region.buffer(EXPECTATION_TOLERANCE)
 
 
 def _unmoved(fact: Fact, track: Sequence[Snapshot]) -> str:

@@ -5,13 +5,12 @@ is the south. Edge-connected equal letters are one object. Objects are named by 
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
 from utak.geometry.raster.rasterize import squares
@@ -38,7 +37,6 @@ def read_picture(path: Path | str) -> World:
 
 
 def _bad_rows(source: Source, rows: list[str]) -> Iterator[Problem]:
-    """Yield the problems of the picture's size."""
     if not rows:
         yield source.problem(source.start(), "the picture is empty")
         return
@@ -54,7 +52,6 @@ def _bad_rows(source: Source, rows: list[str]) -> Iterator[Problem]:
 
 
 def _bad_marks(source: Source, rows: list[str]) -> Iterator[Problem]:
-    """Yield the problems of single characters."""
     found = []
     for number, row in enumerate(rows, 1):
         for match in re.finditer("[^a-z.]", row):
@@ -78,7 +75,7 @@ def _world(rows: list[str]) -> World:
     return World(
         width=len(rows[0]),
         height=len(rows),
-        verge=_outline_of_squares({square for square, mark in marks.items() if mark == VERGE_COLOUR}),
+        verge=outline_of_cells({square for square, mark in marks.items() if mark == VERGE_COLOUR}),
         movable=tuple(thing for thing in things if not thing.polygon.interiors),
         fixed=tuple(thing for thing in things if thing.polygon.interiors),
         utak=(utak[0] + 0.5, utak[1] + 0.5),
@@ -98,7 +95,7 @@ def _things(marks: Mapping[_Square, str]) -> list[Thing]:
         part = _connected(first, lettered)
         done |= part
         numbers[colour] = numbers.get(colour, 0) + 1
-        things.append(Thing(f"{colour}{numbers[colour]}", colour, _outline_of_squares(part)))
+        things.append(Thing(f"{colour}{numbers[colour]}", colour, outline_of_cells(part)))
     return sorted(things, key=lambda thing: thing.name)
 
 
@@ -114,24 +111,14 @@ def _connected(first: _Square, marks: Mapping[_Square, str]) -> set[_Square]:
     return part
 
 
-def _outline_of_squares(part: set[_Square]) -> Any:
-    """Return the outline of a set of squares, with holes, without vertices on straight lines."""
-    corners = np.array(sorted(part), dtype=float).reshape(-1, 2)
-    whole = shapely.coverage_union_all(shapely.box(*corners.T, *(corners + 1).T))
-    parts = [
-        shapely.Polygon(_ring_corners(polygon.exterior), [_ring_corners(hole) for hole in polygon.interiors])
-        for polygon in shapely.get_parts(shapely.normalize(whole))
-        if not polygon.is_empty
-    ]
-    return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+def outline_of_cells(cells: Iterable[tuple[int, int]], scale: int = 1, border: int = 0) -> Any:
+    """Return the outline of cells (column, row), a shapely Polygon where they are edge-connected, else a MultiPolygon.
 
-
-def _ring_corners(ring: Any) -> npt.NDArray[np.float64]:
-    """Return the vertices at which a ring of unit steps turns, (n, 2) float64."""
-    points = shapely.get_coordinates(ring)[:-1]
-    turns = np.any(points - np.roll(points, 1, axis=0) != np.roll(points, -1, axis=0) - points, axis=1)
-    corners: npt.NDArray[np.float64] = points[turns]
-    return corners
+    scale : squares along a cell. border : squares that lie to the south and west of the cells.
+    """
+    corners = np.array(sorted(cells), float).reshape(-1, 2) * scale + border
+    whole = shapely.coverage_union_all(shapely.box(*corners.T, *(corners + scale).T))
+    return shapely.normalize(whole).simplify(0) if len(corners) else shapely.MultiPolygon()
 
 
 def labelled(rows: Sequence[str], west: float, south: float, unit: float = 1.0) -> Iterator[str]:
@@ -147,29 +134,24 @@ def labelled(rows: Sequence[str], west: float, south: float, unit: float = 1.0) 
     yield (" " * 7 + "".join(ticks)).rstrip()
 
 
-def names_and_places(
-    world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None
-) -> Iterator[str]:
+def names_and_places(world: World, tells_heading: bool = True) -> Iterator[str]:
     """Yield a line about each thing and about Utak: the name, the colour and the squares between which it lies."""
-    x, y = utak or world.utak
-    facing = "" if utak else f", facing {world.heading} degrees from the table's north" if world.heading else ""
+    facing = f", facing {world.heading} degrees from the table's north" if tells_heading and world.heading else ""
+    x, y = world.utak
     yield f"{UTAK_MARK} utak: POINT ({x:.10g} {y:.10g}){facing}"
-    now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
     for thing in (*world.movable, *world.fixed):
-        west, south, east, north = (f"{value:.6g}" for value in now.get(thing.name, thing.polygon).bounds)
-        fixed = "" if thing.name in now else ", fixed"
+        west, south, east, north = (f"{value:.6g}" for value in thing.polygon.bounds)
+        fixed = ", fixed" if thing in world.fixed else ""
         yield f"{thing.colour} {thing.name}: x {west} to {east}, y {south} to {north}{fixed}"
 
 
-def draw(world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None) -> str:
+def draw(world: World) -> str:
     """Return a world as a picture, one line a row, the north row first."""
-    now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
     rows = [[FLOOR_MARK] * world.width for _ in range(world.height)]
-    layers = [(VERGE_COLOUR, world.verge), *((thing.colour, thing.polygon) for thing in world.fixed)]
-    layers += [(thing.colour, now[thing.name]) for thing in world.movable]
-    for colour, shape in layers:
+    things = [(thing.colour, thing.polygon) for thing in (*world.fixed, *world.movable)]
+    for colour, shape in [(VERGE_COLOUR, world.verge), *things]:
         for j, i in zip(*squares(shape, world.width, world.height).nonzero(), strict=True):
             rows[j][i] = colour
-    x, y = utak or world.utak
+    x, y = world.utak
     rows[min(int(y), world.height - 1)][min(int(x), world.width - 1)] = UTAK_MARK
     return "\n".join("".join(row) for row in reversed(rows)) + "\n"

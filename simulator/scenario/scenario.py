@@ -30,10 +30,10 @@ def read_scenario(folder: Path | str) -> Scenario:
     folder = Path(folder)
     _must_be_folder(folder)
     problems: list[Problem] = []
-    world = _collect_problems(problems, lambda: read_any_world(folder))
-    task = _collect_problems(problems, lambda: read_task(folder / "start.lp", folder / "goal.lp"))
+    world = collect_problems(problems, lambda: read_any_world(folder))
+    task = collect_problems(problems, lambda: read_task(folder / "start.lp", folder / "goal.lp"))
     expect = folder / "expect.lp"
-    expectations = _collect_problems(problems, lambda: read_expectations(expect, world)) if expect.exists() else None
+    expectations = collect_problems(problems, lambda: read_expectations(expect, world)) if expect.exists() else None
     if problems or world is None or task is None:
         raise BadInputError(problems)
     return Scenario(world, task, expectations)
@@ -65,7 +65,7 @@ def _must_be_folder(folder: Path) -> None:
     raise CannotOpenError(str(folder), "a scenario is a folder, this is none" if exists else "no such folder")
 
 
-def _collect_problems(problems: list[Problem], read: Callable[[], _T]) -> _T | None:
+def collect_problems(problems: list[Problem], read: Callable[[], _T]) -> _T | None:
     """Return what `read` returns; append the problems that it raises to `problems`, and return None then."""
     try:
         return read()

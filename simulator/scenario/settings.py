@@ -1,7 +1,10 @@
 """The options that determine a run."""
 
 from dataclasses import dataclass
+from typing import Any
 
+SETTING_NAMES = ("seed", "noise", "paths", "max_steps", "pull")  # as episodes and command lines name the options
+MAX_SEED, MAX_NOISE, MAX_STEPS = 2**63 - 1, 1.0, 1_000_000  # the greatest values of options; conventions
 PATH_CHOICES = ("skeleton", "visibility", "grid")  # the path-finders, as `--paths` and episodes name them
 
 
@@ -15,6 +18,11 @@ class Settings:
     max_steps: int = 200  # the limit on the number of commands
     kb_files: tuple[str, ...] = ()  # the files with users' rules
     pull: bool = True  # whether the robot may pull held objects
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The options that are values of JSON, by name; the files of rules are left out."""
+        return {name: getattr(self, name) for name in SETTING_NAMES}
 
 
 def kb_files_named(paths: list[str]) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from utak.kb.language.arguments import (
     decimal_argument,
     decimal_value,
     integer_argument,
+    text_value,
     word_argument,
 )
 from utak.kb.language.diagnostics import BadInputError, Problem, did_you_mean
@@ -24,10 +25,9 @@ from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import Source, read_source
 from utak.kb.language.terms import Fact, Number, Symbol, Term, Text
 from utak.kb.language.vocabulary import MAX_WEIGHT_POINTS, Vocabulary, check_facts, fact_argument
-from utak.simulator.scenario.settings import PATH_CHOICES
+from utak.simulator.scenario.settings import MAX_NOISE, MAX_STEPS, PATH_CHOICES
 
 TRIAL_FILE = "trial.lp"  # its name in a scenario folder (docs/testing.md)
-MAX_TRIAL_STEPS = 1_000_000  # commands; as for --max-steps
 PLAIN_ANSWERS = ("yes", "no", "dont_know")  # answers without rows
 ANSWER_HINT = f"one of {', '.join(PLAIN_ANSWERS)}, rows(N) or row(VALUE, ...)"
 
@@ -74,9 +74,9 @@ TRIAL_QUESTIONS: Vocabulary = {
 # The predicates of trial.lp.
 TRIAL_VOCABULARY: Vocabulary = {
     "seed": (integer_argument("a seed", 0, 2**31 - 1),),
-    "noise": (decimal_argument("a noise", 0, 1),),
+    "noise": (decimal_argument("a noise", 0, MAX_NOISE),),
     "paths": (word_argument("path-finder", PATH_CHOICES),),
-    "max_steps": (integer_argument("a number of steps", 0, MAX_TRIAL_STEPS),),
+    "max_steps": (integer_argument("a number of steps", 0, MAX_STEPS),),
     "no_pull": (),
     "rules": (ArgumentType("a file of rules", _check_file_name),),
     **TRIAL_QUESTIONS,
@@ -93,7 +93,7 @@ def read_trial_plan(path: Path | str) -> TrialPlan:
     if problems:
         raise BadInputError(problems)
     weights = {fact.args[0]: int(decimal_value(fact.args[1])) for fact in facts if fact.name == "weight"}
-    rules = tuple(str(Path(path).parent / _text(fact)) for fact in facts if fact.name == "rules")
+    rules = tuple(str(Path(path).parent / text_value(fact.args[0])) for fact in facts if fact.name == "rules")
     asks = {fact: weights.get(fact, 1) for fact in facts if fact.name == "asks"}
     return TrialPlan(dict(_options(facts)), rules, asks)
 
@@ -129,7 +129,7 @@ def _options(facts: Sequence[Fact]) -> Iterator[tuple[str, Any]]:
 
 def query_of(asked: Fact) -> str:
     """Return the query of asks(QUERY, ANSWER)."""
-    return _text(asked)
+    return text_value(asked.args[0])
 
 
 def answers_as_wanted(asked: Fact, kind: str, rows: Sequence[Sequence[int | str]], more: bool) -> str:
@@ -151,10 +151,3 @@ def _rows_in_words(rows: Sequence[Sequence[int | str]], more: bool) -> str:
     """Return the number of rows of an answer, and the first of them, in words."""
     shown = "; ".join(", ".join(map(str, row)) for row in rows[:5])
     return f"{len(rows)} row{'s' * (len(rows) != 1)}{' or more' * more}: {shown}{' ...' * (len(rows) > 5)}"
-
-
-def _text(fact: Fact) -> str:
-    """Return the text in a fact's first argument."""
-    term = fact.args[0]
-    assert isinstance(term, Text)
-    return term.value

@@ -9,12 +9,6 @@ from utak.kb.language.source_text import lies_outside
 SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp", "trial.lp")  # all files of a scenario
 
 
-def add_untrusted_option(part: argparse.ArgumentParser) -> None:
-    """Declare the option `--untrusted`."""
-    what = "refuse links that lead out of a scenario's folder"
-    part.add_argument("--untrusted", action="store_true", help=what)
-
-
 def refuse_links(options: argparse.Namespace, place: Path | str, root: Path | str | None = None) -> None:
     """Raise CannotOpenError when `--untrusted` is given and a link leads out of the scenario's folder."""
     if options.untrusted:

@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import shapely
 
+from utak.kb.language.arguments import decimal_value, text_value
 from utak.kb.language.diagnostics import BadInputError, Problem
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import Source, read_source
-from utak.kb.language.terms import Fact, Number, Text
+from utak.kb.language.terms import Fact
 from utak.kb.language.vocabulary import WORLD_VOCABULARY, check_facts
 from utak.kb.language.wkt import parse_wkt
 from utak.simulator.world.world import VERGE_COLOUR, Thing, World
@@ -65,7 +66,6 @@ def _world(source: Source, facts: Sequence[Fact]) -> World:
         *_bad_shapes(source, things),
         *_off_the_table(source, [verge, *things], shapely.box(0, 0, width, height)),
         *_overlaps(source, verge, things),
-        *_bad_floor(source, verge, width, height),
         *_bad_place(source, utak, here, [verge, *things], width, height),
     ]
     if problems:
@@ -82,22 +82,15 @@ def _world(source: Source, facts: Sequence[Fact]) -> World:
 
 
 def _only_fact(facts: Sequence[Fact], name: str) -> Fact:
-    """Return the fact of a predicate that occurs once."""
     return next(fact for fact in facts if fact.name == name)
 
 
 def _number(fact: Fact, index: int) -> int:
-    """Return the number in an argument of a fact."""
-    term = fact.args[index]
-    assert isinstance(term, Number)
-    return term.value
+    return int(decimal_value(fact.args[index]))
 
 
 def _shape(fact: Fact, index: int) -> Any:
-    """Return the shape in an argument of a fact."""
-    term = fact.args[index]
-    assert isinstance(term, Text)
-    return parse_wkt(term.value)
+    return parse_wkt(text_value(fact.args[index]))
 
 
 def _things(stated: Sequence[_Stated], kind: str) -> list[Thing]:
@@ -160,16 +153,13 @@ def _overlaps(source: Source, verge: _Stated, things: Sequence[_Stated]) -> Iter
             yield source.problem(second.fact.args[2].span, what)
 
 
-def _bad_floor(source: Source, verge: _Stated, width: int, height: int) -> Iterator[Problem]:
-    """Yield a problem when the verge covers the whole table."""
-    if verge.shape.area >= width * height - MAX_TOUCHING_AREA:
-        yield source.problem(verge.fact.args[0].span, "the verge covers the whole table: there is no floor")
-
-
 def _bad_place(
     source: Source, utak: Fact, here: Any, stated: Sequence[_Stated], width: int, height: int
 ) -> Iterator[Problem]:
-    """Yield the problems of Utak's place: off the table, inside a thing, or not on floor."""
+    """Yield the problems of the floor, the verge stated first, and of Utak's place: off the table, or not on floor."""
+    if stated[0].shape.area >= width * height - MAX_TOUCHING_AREA:
+        what = "the verge covers the whole table: there is no floor"
+        yield source.problem(stated[0].fact.args[0].span, what)
     span = utak.args[0].span
     if not (0 <= here.x <= width and 0 <= here.y <= height):
         yield source.problem(span, f"Utak stands off the table, at ({here.x:g}, {here.y:g})")

@@ -3,9 +3,9 @@
 Modules in reading order:
 
 contents     the texts of a scenario's files, which travel to the workers
-plan         the runs of a sweep, in order, and the header of its results
+plan         the runs of a sweep, in order, and the name of each
 one_run      one run on a worker: contents in, result out
-results      the file of results: resumed, appended to, put in order
+results      results as JSON lines that are appended
 carrying_out a sweep from its plan to its results
 summary      counts, rates with intervals, and steps by scenario and noise
 picture      the summary as an SVG picture

@@ -28,26 +28,18 @@ def run_one(argument: dict[str, Any], make: RobotMaker = make_robot) -> dict[str
     rules = [(f"rules{number}-{Path(name).name}", text) for number, (name, text) in enumerate(argument["rules"])]
     with written([*argument["files"], *rules]) as folder:
         try:
-            return _ran(folder, [name for name, _ in rules], argument, make)
+            scenario = read_scenario(folder)
+            settings = Settings(**argument["options"], kb_files=tuple(str(folder / name) for name, _ in rules))
+            result = Session(scenario, settings, make, EpisodeLog(None)).run()
         except BadInputError as bad:
             problems = [problem._replace(file=_short(problem.file, folder)) for problem in bad.problems]
             raise BadInputError(problems) from bad
         except CannotOpenError as absent:
             raise CannotOpenError(_short(absent.path, folder), absent.why) from absent
-
-
-def _ran(folder: Path, rules: list[str], argument: dict[str, Any], make: RobotMaker) -> dict[str, Any]:
-    """Run the robot in the scenario of a folder."""
-    scenario = read_scenario(folder)
-    options = {name: argument[name] for name in ("seed", "noise", "paths", "max_steps", "pull")}
-    settings = Settings(**options, kb_files=tuple(str(folder / name) for name in rules))
-    result = Session(scenario, settings, make, EpisodeLog(None)).run()
-    expectations = scenario.expectations
-    passed = None
-    if expectations is not None:
-        passed = not list(faults_of(result, result.outcomes, expects_verdict(expectations)))
-    entry = {**result.line["result"], "unmet": list(result.unmet)}
-    return {"result": entry, "passed": passed}
+    expected, passed = scenario.expectations, None
+    if expected is not None:
+        passed = not list(faults_of(result, result.outcomes, expects_verdict(expected)))
+    return {"result": {**result.line["result"], "unmet": list(result.unmet)}, "passed": passed}
 
 
 def _short(path: str, folder: Path) -> str:

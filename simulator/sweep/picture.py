@@ -6,7 +6,7 @@ from statistics import median
 from xml.sax.saxutils import escape
 
 from utak.simulator.sweep.summary import SweepCount, upper_percentile
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.terminal.streams import one_line
 
 # Colours that colour-blind readers can tell apart (Okabe and Ito 2008), without the yellow, which is pale on white.
 MARK_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
@@ -52,7 +52,8 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
     for number, name in enumerate(scenarios):
         y = top + number * row_height
         if number % 2 == 0:
-            parts.append(_band(left, y, right + PANEL_WIDTH - left, row_height))
+            size = f'width="{right + PANEL_WIDTH - left:.1f}" height="{row_height:.1f}"'
+            parts.append(f'<rect class="band" x="{left:.1f}" y="{y:.1f}" {size}/>')
         parts.append(_text(left - 8, y + row_height / 2 + 4, _short_name(name), anchor="end", title=name))
     parts += _axis(percent, [0, 20, 40, 60, 80, 100], top, bottom, "success rate, percent (bar: 95 % Wilson interval)")
     parts += _axis(commands, ticks, top, bottom, "commands, logarithmic: median (bar: to the 95th percentile)")
@@ -154,13 +155,7 @@ def _bar(start: float, end: float, y: float, number: int) -> str:
 
 
 def _line(x1: float, y1: float, x2: float, y2: float, kind: str) -> str:
-    """Return a line of a class."""
     return f'<line class="{kind}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"/>'
-
-
-def _band(x: float, y: float, width: float, height: float) -> str:
-    """Return the pale band behind a row."""
-    return f'<rect class="band" x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}"/>'
 
 
 def _text(x: float, y: float, text: str, kind: str = "", anchor: str = "start", title: str = "") -> str:
@@ -171,8 +166,7 @@ def _text(x: float, y: float, text: str, kind: str = "", anchor: str = "start", 
 
 
 def _escaped(text: str) -> str:
-    """Return a text as it may stand in SVG."""
-    return escape(escape_controls(text, lines=False))
+    return escape(one_line(text))
 
 
 def _short_name(name: str) -> str:

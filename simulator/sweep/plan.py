@@ -1,25 +1,26 @@
-"""The plan of a sweep: its runs in order, and the header of its results."""
+"""The plan of a sweep: its runs in order, and the name of each."""
 
 import hashlib
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from itertools import islice
+from typing import NamedTuple
 
-from utak.simulator.scenario.settings import Settings
+from utak.simulator.scenario.settings import MAX_SEED, Settings
 from utak.simulator.sweep.contents import ScenarioContents
 from utak.simulator.sweep.executors.code_identity import code_identity
 from utak.simulator.sweep.executors.tasks import WorkerTask
 
-SWEEP_VERSION = 1  # of the form of results; docs/sweeps.md
 RUN_FUNCTION = "utak.simulator.sweep.one_run:run_one"  # what a worker does for a run
 PREPARATION_FUNCTION = "utak.simulator.sweep.one_run:prepare"  # what each worker process does first
-SEED_LIMIT = 2**63  # seeds are below it
 MAX_RUNS = 200_000  # of a sweep; each takes about 2 kB of memory
+RUN_ID_LENGTH = 16  # hexadecimal digits: two of `MAX_RUNS` runs agree in them once in a billion sweeps
 
 
 class SweepRun(NamedTuple):
-    """One run of a sweep: the name of the scenario, noise and seed. It is the key of its line in the results."""
+    """One run of a sweep: the name of the scenario, noise and seed."""
 
     scenario: str
     noise: float
@@ -37,65 +38,48 @@ class SweepPlan:
     settings: Settings = field(default_factory=Settings)
     rules: tuple[tuple[str, str], ...] = ()  # (name, text) of each file of users' rules
     seconds: float | None = None  # the limit of wall-clock time of a run; None for no limit
+    shard: tuple[int, int] = (1, 1)  # (i, n): only every n-th run, from the i-th on
 
     @property
     def size(self) -> int:
-        """The number of runs."""
+        """The number of runs of all shards."""
         return len(self.scenarios) * len(self.noises) * sum(end - first for first, end in self.seeds)
 
     @cached_property
     def runs(self) -> tuple[SweepRun, ...]:
-        """All runs in the order of their lines in the results: by scenario, then noise, then seed."""
-        return tuple(self._runs())
+        """The runs of the shard in order: by scenario, then noise, then seed."""
+        which, of = self.shard
+        return tuple(islice(self._runs(), which - 1, None, of))
 
-    @cached_property
-    def header(self) -> dict[str, Any]:
-        """The first line of the results: what determines them, and with which code and libraries."""
-        return {
-            "utak": "sweep",
-            "version": SWEEP_VERSION,
-            "runs": self.size,
-            "plan": {
-                "scenarios": {one.name: one.digest for one in self.scenarios},
-                "seeds": written_seeds(self.seeds),
-                "noise": list(self.noises),
-                "paths": self.settings.paths,
-                "max_steps": self.settings.max_steps,
-                "pull": self.settings.pull,
-                "kb": [hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest() for _, text in self.rules],
-                "seconds": self.seconds,
-            },
-            "made_with": code_identity(),
-        }
+    def run_id(self, run: SweepRun) -> str:
+        """Return the name of a run: a digest of all that decides its result, hexadecimal."""
+        rules = [text for _, text in self.rules]
+        options = (run.seed, run.noise, self.settings.paths, self.settings.max_steps, self.settings.pull, self.seconds)
+        whole = json.dumps([self._digests[run.scenario], rules, options, code_identity()])
+        return hashlib.sha256(whole.encode()).hexdigest()[:RUN_ID_LENGTH]
 
     def task(self, run: SweepRun) -> WorkerTask:
         """Return the task of a run, with the texts of all files that it needs."""
-        contents = next(one for one in self.scenarios if one.name == run.scenario)
         argument = {
-            "files": [list(file) for file in contents.files],
+            "files": [list(file) for file in self._contents[run.scenario].files],
             "rules": [list(file) for file in self.rules],
-            "seed": run.seed,
-            "noise": run.noise,
-            "paths": self.settings.paths,
-            "max_steps": self.settings.max_steps,
-            "pull": self.settings.pull,
+            "options": self.settings.options | {"noise": run.noise, "seed": run.seed},
         }
         return WorkerTask(RUN_FUNCTION, argument, self.seconds)
+
+    @cached_property
+    def _digests(self) -> dict[str, str]:
+        return {one.name: one.digest for one in self.scenarios}
+
+    @cached_property
+    def _contents(self) -> dict[str, ScenarioContents]:
+        return {one.name: one for one in self.scenarios}
 
     def _runs(self) -> Iterator[SweepRun]:
         for contents in self.scenarios:
             for noise in self.noises:
                 for first, end in self.seeds:
                     yield from (SweepRun(contents.name, noise, seed) for seed in range(first, end))
-
-
-def written_seeds(ranges: tuple[tuple[int, int], ...]) -> str:
-    """Return ranges of seeds as `--seeds` takes them.
-
-    >>> written_seeds(((0, 10), (12, 13)))
-    '0:10,12'
-    """
-    return ",".join(str(first) if end == first + 1 else f"{first}:{end}" for first, end in ranges)
 
 
 def parse_seeds(text: str) -> tuple[tuple[int, int], ...]:
@@ -118,7 +102,6 @@ def parse_seeds(text: str) -> tuple[tuple[int, int], ...]:
 
 
 def _range(part: str) -> tuple[int, int]:
-    """Return the range (first, end) of `A:B` or `A`; raise ValueError for any other text."""
     numbers = part.split(":")
     if len(numbers) > 2 or not all(1 <= len(n) <= 19 and n.isascii() and n.isdigit() for n in numbers):
         raise ValueError(f"must be A:B (seeds A to B - 1) or A, with commas between, not {part[:40]!r}")
@@ -126,6 +109,6 @@ def _range(part: str) -> tuple[int, int]:
     end = int(numbers[-1]) if len(numbers) == 2 else first + 1
     if end <= first:
         raise ValueError(f"there is no seed in {part[:40]!r}: A:B is the seeds A to B - 1")
-    if end > SEED_LIMIT:
-        raise ValueError(f"seeds are below {SEED_LIMIT}, unlike those in {part[:40]!r}")
+    if end > MAX_SEED + 1:
+        raise ValueError(f"seeds are below {MAX_SEED + 1}, unlike those in {part[:40]!r}")
     return first, end

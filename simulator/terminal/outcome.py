@@ -1,7 +1,6 @@
 """One of several things to do: an error is reported at once, and the other things are still done."""
 
 import os
-import sys
 from collections.abc import Callable
 from typing import ParamSpec
 
@@ -12,12 +11,8 @@ from utak.simulator.terminal.streams import StreamError
 _Parameters = ParamSpec("_Parameters")
 
 
-def attempt(do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _Parameters.kwargs) -> int:
-    """Call a function and return its exit code; report an error on the standard error and return the code for it."""
-    code, message = outcome_of(do, *args, **kwargs)
-    if message:
-        print(message, file=sys.stderr)
-    return code
+class UsageError(Exception):
+    """The command line is wrong; the message says what is."""
 
 
 def outcome_of(
@@ -35,10 +30,5 @@ def outcome_of(
     except Exception as bug:
         if os.environ.get("UTAK_DEBUG"):
             raise
-        return exits.OUR_BUG, bug_message(bug)
-
-
-def bug_message(bug: Exception) -> str:
-    """Return the message about an unexpected exception."""
-    what = f"utak: this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}\n"
-    return what + "Please report it with the command and its files; UTAK_DEBUG=1 shows where."
+        what = f"utak: this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}\n"
+        return exits.OUR_BUG, what + "Please report it with the command and its files; UTAK_DEBUG=1 shows where."

@@ -17,7 +17,7 @@ class StreamError(Exception):
     """A standard stream is closed, full or unreadable; the message names it."""
 
 
-def escape_controls(text: str, lines: bool = True) -> str:
+def escape_controls(text: str) -> str:
     r"""Return a text with all characters that control a terminal written as JSON escapes.
 
     Examples
@@ -25,8 +25,12 @@ def escape_controls(text: str, lines: bool = True) -> str:
     >>> escape_controls("red \x1b[31m")
     'red \\u001b[31m'
     """
-    clean = UNSAFE_CHARACTERS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
-    return clean if lines else clean.replace("\n", "\\n")
+    return UNSAFE_CHARACTERS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+
+
+def one_line(text: str) -> str:
+    """Return a text on one line, with all characters that control a terminal written as escapes."""
+    return escape_controls(text).replace("\n", "\\n")
 
 
 class GuardedStream:

@@ -4,7 +4,7 @@ import csv
 import io
 from collections.abc import Sequence
 
-from utak.simulator.terminal.streams import escape_controls
+from utak.simulator.terminal.streams import one_line
 from utak.simulator.testing.record import TrialRecord
 
 COLUMNS = ("scenario", "outcome", "earned", "possible", "verdict", "steps", "why")
@@ -33,5 +33,5 @@ def _cell(value: object) -> object:
     """Return a value as a spreadsheet shall show it: a text that would be a formula begins with an apostrophe."""
     if not isinstance(value, str):
         return value
-    shown = escape_controls(value, lines=False)
+    shown = one_line(value)
     return f"'{shown}" if shown.startswith(FORMULA_MARKS) else shown

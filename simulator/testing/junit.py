@@ -5,9 +5,9 @@ elements and attributes are written that all those servers know. Times are writt
 """
 
 import re
-from collections.abc import Iterator, Sequence
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
 from pathlib import PurePath
-from xml.sax.saxutils import escape, quoteattr
 
 from utak.simulator.terminal import exits
 from utak.simulator.testing.record import TrialRecord
@@ -25,59 +25,44 @@ def as_junit(records: Sequence[TrialRecord]) -> str:
     """Return records as the text of a JUnit XML file, encoded as UTF-8."""
     failed = sum(record["exit_code"] == exits.NOT_REACHED for record in records)
     broken = sum(record["exit_code"] not in (exits.SUCCESS, exits.NOT_REACHED) for record in records)
-    counts = f'tests="{len(records)}" failures="{failed}" errors="{broken}"{_time(*records)}'
-    lines = ['<?xml version="1.0" encoding="utf-8"?>', f'<testsuites name="{SUITE_NAME}" {counts}>']
-    lines.append(f'  <testsuite name="{SUITE_NAME}" {counts} skipped="0">')
-    lines += _properties(records)
-    for record in records:
-        lines += _case(record)
-    return "\n".join([*lines, "  </testsuite>", "</testsuites>"]) + "\n"
-
-
-def _properties(records: Sequence[TrialRecord]) -> Iterator[str]:
-    """Yield the lines about the points of all scenarios together, where authors weighed them."""
+    counts = {"name": SUITE_NAME, "tests": str(len(records)), "failures": str(failed), "errors": str(broken)}
+    root = ElementTree.Element("testsuites", counts | _time(*records))
+    suite = ElementTree.SubElement(root, "testsuite", counts | _time(*records), skipped="0")
     if any(record["weighed"] for record in records):
-        total = total_score(records)
-        yield "    <properties>"
-        yield f'      <property name="points_earned" value="{total.earned}"/>'
-        yield f'      <property name="points_possible" value="{total.possible}"/>'
-        yield "    </properties>"
+        properties = ElementTree.SubElement(suite, "properties")
+        for name, value in total_score(records)._asdict().items():
+            ElementTree.SubElement(properties, "property", name=f"points_{name}", value=str(value))
+    for record in records:
+        _add_case(suite, record)
+    ElementTree.indent(root)
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{ElementTree.tostring(root, "unicode")}\n'
 
 
-def _case(record: TrialRecord) -> Iterator[str]:
-    """Yield the lines about one scenario."""
+def _add_case(suite: ElementTree.Element, record: TrialRecord) -> None:
+    """Append the element of one scenario."""
     place = PurePath(record["scenario"])
     group = ".".join(part for part in place.parent.parts if part not in (".", "..", place.anchor)) or SUITE_NAME
-    yield f"    <testcase classname={_attribute(group)} name={_attribute(place.name or SUITE_NAME)}{_time(record)}>"
+    names = {"classname": _clean(group), "name": _clean(place.name or SUITE_NAME)}
+    case = ElementTree.SubElement(suite, "testcase", names | _time(record))
     if record["exit_code"] != exits.SUCCESS:
-        kind = "failure" if record["exit_code"] == exits.NOT_REACHED else "error"
         said = (record["faults"] or record["error"].splitlines() or [record["outcome"]])[0]
-        attributes = f"message={_attribute(said)} type={_attribute(record['outcome'])}"
-        yield f"      <{kind} {attributes}>{_text(failure_report(record))}</{kind}>"
+        kind = "failure" if record["exit_code"] == exits.NOT_REACHED else "error"
+        ElementTree.SubElement(case, kind, message=_clean(said), type=record["outcome"]).text = _clean(
+            failure_report(record)
+        )
     if record["verdict"] is not None:
-        end = f"{record['verdict']} in {record['steps']} steps: {record['reason']}"
         points = f"\n{record['points']['earned']} of {record['points']['possible']} points" if record["weighed"] else ""
-        yield f"      <system-out>{_text(end + points)}</system-out>"
-    yield "    </testcase>"
+        end = f"{record['verdict']} in {record['steps']} steps: {record['reason']}"
+        ElementTree.SubElement(case, "system-out").text = _clean(end + points)
 
 
-def _time(*records: TrialRecord) -> str:
-    """Return the attribute with the seconds that scenarios took; '' where a record does not say it."""
+def _time(*records: TrialRecord) -> dict[str, str]:
+    """Return the attribute with the seconds that scenarios took; none where a record does not say it."""
     if not records or any("seconds" not in record for record in records):
-        return ""
-    return f' time="{sum(record["seconds"] for record in records):.3f}"'
+        return {}
+    return {"time": f"{sum(record['seconds'] for record in records):.3f}"}
 
 
 def _clean(text: str) -> str:
     """Return a text with all characters that XML cannot hold written as JSON escapes."""
     return NOT_IN_XML.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
-
-
-def _text(text: str) -> str:
-    """Return a text as the contents of an element."""
-    return escape(_clean(text))
-
-
-def _attribute(text: str) -> str:
-    """Return a text as the quoted value of an attribute."""
-    return quoteattr(_clean(text))

@@ -6,7 +6,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from utak.simulator.episode.episode import EpisodeLine
 from utak.simulator.run.trial import ScenarioTrial, promised_points, run_trial
 from utak.simulator.scenario.untrusted import refuse_outside_links
 from utak.simulator.terminal import exits
@@ -14,12 +13,13 @@ from utak.simulator.terminal.action_in_words import describe
 from utak.simulator.terminal.outcome import outcome_of
 
 TrialRecord = dict[str, Any]  # one scenario of `utak test --json` (docs/testing.md)
-OUTCOME_NAMES = {  # by exit code: the word for the outcome of a scenario
-    exits.SUCCESS: "passed",
-    exits.NOT_REACHED: "failed",
-    exits.BAD_INPUT: "bad",
-    exits.CANNOT_OPEN: "absent",
-    exits.OUR_BUG: "bug",
+# By exit code: the name of a scenario's outcome, the word on its line, and the word in the summary.
+OUTCOMES = {
+    exits.SUCCESS: ("passed", "ok", "passed"),
+    exits.NOT_REACHED: ("failed", "FAILED", "failed"),
+    exits.BAD_INPUT: ("bad", "BAD", "bad"),
+    exits.CANNOT_OPEN: ("absent", "ABSENT", "cannot be opened"),
+    exits.OUR_BUG: ("bug", "BUG", "ended by a bug of ours"),
 }
 
 
@@ -66,15 +66,10 @@ def without_run(wish: Wish, code: int, error: str) -> TrialRecord:
     """Return the record of a scenario that was not run to its end, with the message that says why."""
     return {
         "scenario": wish.folder,
-        "outcome": OUTCOME_NAMES[code],
+        "outcome": OUTCOMES[code][0],
         "exit_code": code,
         "error": error,
-        "verdict": None,
-        "believed": None,
-        "achieved": None,
-        "steps": None,
-        "reason": None,
-        "options": None,
+        **dict.fromkeys(("verdict", "believed", "achieved", "steps", "reason", "options")),
         "faults": [],
         "points": None,
         "weighed": False,
@@ -86,27 +81,19 @@ def without_run(wish: Wish, code: int, error: str) -> TrialRecord:
 
 def broken_off(wish: Wish, code: int, error: str) -> TrialRecord:
     """Return the record of a scenario that is there and was not run to its end: it earned none of its points."""
-    promised = promised_points(wish.folder, wish.root if wish.untrusted else None)
-    earned = {} if promised is None else {"points": promised.score._asdict(), "weighed": promised.weighed}
-    return without_run(wish, code, error) | earned
+    return without_run(wish, code, error) | promised_points(wish.folder, wish.root if wish.untrusted else None)
 
 
 def _record(wish: Wish, code: int, trial: ScenarioTrial) -> TrialRecord:
-    """Return the record of a scenario that was run."""
-    settings = trial.settings
-    names = ("seed", "noise", "paths", "max_steps", "pull")
     return without_run(wish, code, "") | {
         **{name: getattr(trial.result, name) for name in ("believed", "achieved", "steps", "reason")},
         "verdict": str(trial.result.verdict),
-        "options": {**{name: getattr(settings, name) for name in names}, "kb": list(settings.kb_files)},
+        "options": trial.settings.options | {"kb": list(trial.settings.kb_files)},
         "faults": list(trial.faults),
         "points": trial.score._asdict(),
         "weighed": trial.weighed,
         "expectations": [one.entry for one in trial.outcomes],
-        "last_steps": [_step_entry(line) for line in trial.last_steps],
+        "last_steps": [
+            {"step": line["step"], "action": describe(line["action"]), "why": line["why"]} for line in trial.last_steps
+        ],
     }
-
-
-def _step_entry(line: EpisodeLine) -> dict[str, Any]:
-    """Return a step in words: its number, its action and the reason of that."""
-    return {"step": line["step"], "action": describe(line["action"]), "why": line["why"]}

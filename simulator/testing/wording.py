@@ -6,44 +6,29 @@ from typing import Any
 
 from utak.simulator.scenario.points import PointScore
 from utak.simulator.terminal import exits
-from utak.simulator.terminal.streams import escape_controls
-from utak.simulator.testing.record import OUTCOME_NAMES, TrialRecord
-
-TEST_OUTCOME_WORDS = {  # by exit code: the word on a scenario's line, and the word in the summary
-    exits.SUCCESS: ("ok", "passed"),
-    exits.NOT_REACHED: ("FAILED", "failed"),
-    exits.BAD_INPUT: ("BAD", "bad"),
-    exits.CANNOT_OPEN: ("ABSENT", "cannot be opened"),
-    exits.OUR_BUG: ("BUG", "ended by a bug of ours"),
-}
+from utak.simulator.terminal.streams import escape_controls, one_line
+from utak.simulator.testing.record import OUTCOMES, TrialRecord
 
 
 def outcome_line(record: TrialRecord) -> str:
     """Return the line about one scenario: the outcome, the points where its author weighed them, and the reasons."""
-    word, folder = TEST_OUTCOME_WORDS[record["exit_code"]][0], _flat(record["scenario"])
+    word, folder = OUTCOMES[record["exit_code"]][1], one_line(record["scenario"])
     points = f"{_points(record)}: " if record["weighed"] else ""
     if record["verdict"] is None:
         return f"{word} {folder}: {points}see above"
-    return f"{word} {folder}: {points}{_flat(_message(record))}"
+    end = f"{record['verdict']} in {record['steps']} steps: {record['reason']}"
+    return f"{word} {folder}: {points}{one_line('; '.join([*record['faults'], end]))}"
 
 
 def _points(record: TrialRecord) -> PointScore:
-    """Return the points of a record that has some."""
     return PointScore(**record["points"])
-
-
-def _message(record: TrialRecord) -> str:
-    """Return the reasons why a scenario failed, and its end."""
-    return "; ".join([*record["faults"], f"{record['verdict']} in {record['steps']} steps: {record['reason']}"])
 
 
 def summary_line(records: Sequence[TrialRecord]) -> str:
     """Return how many scenarios passed, what became of the others, and the points where authors weighed them."""
     counts = Counter(record["exit_code"] for record in records)
     others = "".join(
-        f", {counts[code]} {words[1]}"
-        for code, words in TEST_OUTCOME_WORDS.items()
-        if code != exits.SUCCESS and counts[code]
+        f", {counts[code]} {word}" for code, (_, _, word) in OUTCOMES.items() if code != exits.SUCCESS and counts[code]
     )
     total = total_score(records)
     points = f"; {total}" if any(record["weighed"] for record in records) else ""
@@ -61,7 +46,7 @@ def as_object(records: Sequence[TrialRecord]) -> dict[str, Any]:
     counts = Counter(record["outcome"] for record in records)
     return {
         "scenarios": list(records),
-        "counts": {name: counts[name] for name in OUTCOME_NAMES.values()},
+        "counts": {name: counts[name] for name, _, _ in OUTCOMES.values()},
         "points": total_score(records)._asdict(),
         "exit_code": exits.worst(record["exit_code"] for record in records),
     }
@@ -73,7 +58,6 @@ def failure_report(record: TrialRecord) -> str:
 
 
 def _report_lines(record: TrialRecord) -> Iterator[str]:
-    """Yield the lines of the report of a failure."""
     if record["error"]:
         yield record["error"]
     if record["verdict"] is not None:
@@ -87,14 +71,9 @@ def _report_lines(record: TrialRecord) -> Iterator[str]:
         for fault in record["faults"]:
             if not fault.startswith("not met: "):
                 yield f"  {fault}"
-        yield f"the robot's verdict: {record['verdict']} after {record['steps']} steps: {_flat(record['reason'])}"
+        yield f"the robot's verdict: {record['verdict']} after {record['steps']} steps: {one_line(record['reason'])}"
         if record["last_steps"]:
             yield "its last steps:"
         for step in record["last_steps"]:
-            yield f"  step {step['step']}: {step['action']}: {_flat(step['why'])}"
+            yield f"  step {step['step']}: {step['action']}: {one_line(step['why'])}"
     yield f"repeat it: {record['command']}"
-
-
-def _flat(text: str) -> str:
-    """Return a text on one line, harmless for terminals."""
-    return escape_controls(text, lines=False)

@@ -25,9 +25,7 @@ class Tabletop:
     """A world that changes by commands."""
 
     def __init__(self, world: World, noise: float = 0.0, seed: int = 0) -> None:
-        if not 0.0 <= noise <= 1.0:
-            raise ValueError(f"noise must be from 0 to 1, not {noise}")
-        self.world, self.noise = world, noise
+        self.world = world
         self._senses = Senses(world.heading)
         self._north = direction(world.heading)  # cosine and sine of Utak's heading
         immovable = [world.verge, table_edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
@@ -36,6 +34,7 @@ class Tabletop:
         self._obstacles_at_start: dict[str | None, Obstacles] = {}
         self._table_at_start = Table(world)
         self.restart(seed)
+        self.disturb(noise, None)
 
     def restart(self, seed: int) -> None:
         """Put everything back to where it was at the start, and begin randomness anew with a seed."""
@@ -107,6 +106,11 @@ class Tabletop:
         return self._senses.impression(self._table, self.utak, sensed)
 
     @property
+    def now(self) -> World:
+        """The world as it is now."""
+        return self.world.moved(self.polygons, self.utak)
+
+    @property
     def colours(self) -> TableColours:
         """The colours of the table's squares, as `Table.colours`; Utak is not in it."""
         return self._table.colours
@@ -129,7 +133,7 @@ class Tabletop:
             return
         carried = self._held_thing()
         body = ContactBody(None, [self.utak]) if carried is None else carried.body
-        fraction = self._standing_obstacles().first_contact(body, wanted).fraction
+        fraction = self._standing_obstacles().first_contact(body, wanted)
         if fraction <= 0.0:
             return
         motion = wanted.part(fraction)
@@ -146,7 +150,6 @@ class Tabletop:
         return self._carried
 
     def _carry(self, carried: "CarriedThing") -> None:
-        """Put the held thing where it lies after a motion."""
         assert self.held is not None
         self._carried = carried
         self.polygons[self.held] = carried.polygon

@@ -84,12 +84,6 @@ class Table:
             max(before.south + rows[0], now.south + rows[1]),
         )
 
-    def colour(self, i: int, j: int) -> str | None:
-        """Return the colour of what covers the square (i, j); None for floor."""
-        if not (0 <= i < self.width and 0 <= j < self.height):
-            return VERGE_COLOUR
-        return COLOUR_OF_CODE[int(self.colours[j, i])]
-
     def movable_at(self, i: int, j: int) -> str | None:
         """Return the name of the movable thing that covers the square (i, j), the first by name; None without one."""
         return next((name for name, part in self._movable.items() if part.covers(i, j)), None)

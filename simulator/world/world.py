@@ -1,6 +1,7 @@
 """The true contents of the table and the place where Utak wakes, as frozen values in squares, table frame."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 RingPoints = tuple[tuple[float, float], ...]  # a closed boundary, (x, y) in squares; the first point is not repeated
@@ -28,6 +29,11 @@ class World:
     utak: tuple[float, float]  # the point (x, y) where Utak wakes
     # The direction that Utak faces, in degrees from the table's north, counter-clockwise positive, 0 to 359
     heading: int
+
+    def moved(self, polygons: Mapping[str, Any], utak: tuple[float, float]) -> "World":
+        """Return the world with other outlines of movable things, by name, and with Utak elsewhere."""
+        things = tuple(replace(thing, polygon=polygons.get(thing.name, thing.polygon)) for thing in self.movable)
+        return replace(self, movable=things, utak=utak)
 
 
 def outer_ring(polygon: Any) -> RingPoints:

@@ -26,8 +26,7 @@ from utak.kb.perception.frame import turned
 from utak.kb.task.task import Task
 from utak.planner.cycle import Verdict
 from utak.simulator.scenario.settings import Settings
-from utak.simulator.sweep.executors.in_process import run_in_this_process
-from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
+from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask, carry_out
 
 
 def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:
@@ -182,6 +181,7 @@ def test_worlds_that_went_wrong_are_run_again(tmp_path: Path) -> None:
     assert again == [(1, 1), (1, 2)]
 
 
+@pytest.mark.long
 def test_one_world_is_drawn_at_each_step(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     scripted = partial(run_trial, maker=maker([HERE, HERE], GIVES_UP))
     campaign.main(["--only", "3:2", "--keep", str(tmp_path)], scripted)
@@ -254,7 +254,7 @@ def test_a_process_that_dies_is_a_crash_of_its_trial() -> None:
 
 def test_a_trial_as_a_task_is_the_same_trial(tmp_path: Path) -> None:
     task = trial_task(1, 5, Conditions(max_steps=2, seconds=0), tmp_path)
-    (found,) = run_in_this_process([WorkerTask(task.function, json.loads(json.dumps(task.argument)))])
-    trial = trial_of_outcome(1, 5, Conditions(), found[1])
+    found = carry_out(WorkerTask(task.function, json.loads(json.dumps(task.argument))))
+    trial = trial_of_outcome(1, 5, Conditions(), found)
     assert (trial.task, trial.seed, trial.crash) == (1, 5, "") and len(trial.cycles) == trial.steps + 1
     assert task.seconds is None and (trial_task(1, 5, Conditions(seconds=9), tmp_path).seconds or 0) > 9

@@ -61,6 +61,7 @@ def test_a_planted_false_done_is_found_counted_and_kept(
     assert f"`{asked.name}`" in report([row]).split("## Errors")[0]
 
 
+@pytest.mark.long
 def test_a_planted_false_impossible_is_found_and_a_true_one_is_not(claiming: Callable[[Asked, str], ClaimRow]) -> None:
     false, true = claiming(ABLE, "impossible"), claiming(UNABLE, "impossible")
     assert (false.false_impossible, true.false_impossible) == (True, False)
@@ -69,6 +70,7 @@ def test_a_planted_false_impossible_is_found_and_a_true_one_is_not(claiming: Cal
     assert counted([false, true], "impossible") == "2"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("verdict", ["limit", "possible_if", "whatever"])
 def test_other_verdicts_claim_nothing_and_have_their_columns(
     claiming: Callable[[Asked, str], ClaimRow], verdict: str

@@ -35,8 +35,7 @@ from utak.planner.cycle import Verdict
 from utak.simulator.run.session import RobotMaker
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
-from utak.simulator.sweep.executors.in_process import run_in_this_process
-from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
+from utak.simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask, carry_out
 
 ENOUGH_SECONDS = 300  # of the processor, also where kernels are compiled first; searches end when they find a way
 
@@ -254,7 +253,7 @@ def counted(tmp_path: Path) -> Callable[..., tuple[int, int]]:
 
         def executor(tasks: Sequence[WorkerTask]) -> Any:
             runs.extend(tasks)
-            yield from run_in_this_process([task._replace(function=f"{__name__}:giving_up") for task in tasks])
+            yield from enumerate(carry_out(task._replace(function=f"{__name__}:giving_up")) for task in tasks)
 
         return main([*arguments, "-o", str(tmp_path / "results.jsonl")], executor), len(runs)
 
@@ -275,7 +274,7 @@ def test_runs_are_not_repeated(
         results.write('{"kind":"plug","na')  # as a run that was killed leaves it
     assert counted("--kinds", "plug,swap", "--count", "2") == (0, 2)
     assert capsys.readouterr().out.splitlines()[-1].strip().startswith("2 x limit")
-    rows = [json.loads(line) for line in (tmp_path / "results.jsonl").read_text().splitlines()[1:]]
+    rows = [json.loads(line) for line in (tmp_path / "results.jsonl").read_text().splitlines()]
     assert [(row["kind"], row["name"]) for row in rows] == [("plug", "0"), ("plug", "1"), ("swap", "0"), ("swap", "1")]
 
 
@@ -286,7 +285,7 @@ def test_a_damaged_file_of_results_is_refused(
     with (tmp_path / "results.jsonl").open("a") as results:
         results.write('{"kind":"plug","colour":"c"}\n')
     assert counted("--kinds", "plug", "--count", "1") == (2, 0)
-    assert "results.jsonl:3" in capsys.readouterr().err
+    assert "results.jsonl:2" in capsys.readouterr().err
     (tmp_path / "results.jsonl").write_text("notes of mine\n")
     assert counted("--kinds", "plug", "--count", "1") == (2, 0)
     assert (tmp_path / "results.jsonl").read_text() == "notes of mine\n"

@@ -10,6 +10,7 @@ from benchmarks.orders import meanings, planning, strategies
 from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 
 
+@pytest.mark.long
 def test_all_strategies_find_a_plan_of_the_same_cost() -> None:
     (*decisions,) = strategies._decisions(*planning.house(np.random.default_rng([0, 2, 6]), 2))
     (facts,) = decisions

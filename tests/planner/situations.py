@@ -89,9 +89,9 @@ class Tools(NamedTuple):
     verifier: Verifier
 
 
-def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:
+def tools_with(executor: PlanExecutor | None = None) -> Tools:
     """Return the tools of one decision, new ones where none are given."""
-    return Tools(executor or PlanExecutor(), pursuer or Pursuer("skeleton"), Verifier())
+    return Tools(executor or PlanExecutor(), Pursuer("skeleton"), Verifier())
 
 
 def turn_of(
@@ -106,8 +106,8 @@ def watched_robot(operations: PlanOperations) -> RobotMaker:
 
     def make(body: Body, task: Task, settings: Settings) -> Robot:
         warm(carrying=True, paths=settings.paths)
-        executor = PlanExecutor(settings.pull, operations=operations)
-        decider = Decider(task, settings.paths, (), settings.pull, executor=executor)
+        decider = Decider(task, settings.paths, (), settings.pull)
+        decider.executor = PlanExecutor(settings.pull, operations=operations)
         return Robot(body, task, Options(settings.paths, (), settings.max_steps, settings.pull), decider)
 
     return make

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -64,6 +65,7 @@ def test_a_pushed_thing_sweeps_every_place_on_its_way_and_no_other(dx: float, dy
     assert swept.difference(sampled.buffer(np.hypot(dx, dy) / 40 + 1e-6)).area < 1e-6
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=20)
 @given(st.integers(-180, 180), NUMBERS, NUMBERS)
 def test_a_turned_thing_sweeps_an_arc(degrees: int, x: float, y: float) -> None:

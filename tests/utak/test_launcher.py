@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.tables import few
 from utak.launcher import isolated_command
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -71,7 +70,8 @@ def cold_cache(place: Path) -> dict[str, str]:
     return {"NUMBA_CACHE_DIR": str(place / "cache")}
 
 
-@pytest.mark.parametrize("command", few(COMMANDS, 1))
+@pytest.mark.long
+@pytest.mark.parametrize("command", COMMANDS)
 def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path) -> None:
     arguments = UTAK + COMMANDS[command] if command != "warming" else isolated_command("utak.simulator.run.warming")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
@@ -83,6 +83,7 @@ def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path
     assert done.returncode in (0, 1, 75), done.stderr.decode()
 
 
+@pytest.mark.long
 def test_users_packages_on_the_path_are_not_executed(folder: Path) -> None:
     for name in BAIT:
         (folder / f"{name}.py").unlink()
@@ -129,6 +130,7 @@ def episode(place: Path) -> Path:
     return path
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc")
 def test_a_worker_ends_with_its_parent(tmp_path: Path) -> None:
     for name, text in FILES.items():

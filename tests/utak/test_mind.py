@@ -8,12 +8,17 @@ from typing import Any
 import pytest
 
 import utak
-from utak.simulator.run.session import CannotAdoptError
+from utak.simulator.run.session import CannotAdoptError, Session
 
 WORLD = "bbbbbbb\nb.....b\nb.....b\nb..U..b\nbbbbbbb\n"
 ROOM = utak.Scenario.from_text(
     WORLD, "at(utak, corner(northwest)).", expect='inside(utak, "POLYGON ((1 3, 2 3, 2 4, 1 4, 1 3))").'
 )
+
+
+def session_of(run: utak.Run) -> Session:
+    """Return the session that rests at the last step of a run."""
+    return run._story._moment.sessions[run._story.at]
 
 
 class Follower(utak.Mind):
@@ -84,14 +89,14 @@ def test_the_run_of_a_mind_is_forked_with_the_mind() -> None:
     assert fork.finish().record == run.finish().record
     other = run.fork(goal="at(utak, start).")
     assert other.verdict == "done"  # the mind was asked again, and stands in the corner
-    assert other._session.robot.mind.tasks == [["at(utak,corner(northwest))"], ["at(utak,start)"]]
-    assert run._session.robot.mind.tasks == [["at(utak,corner(northwest))"]]
+    assert session_of(other).robot.mind.tasks == [["at(utak,corner(northwest))"], ["at(utak,start)"]]
+    assert session_of(run).robot.mind.tasks == [["at(utak,corner(northwest))"]]
 
 
 def test_a_mind_takes_no_rules() -> None:
     """Rules would have no effect on a mind that reasons by itself, so they are refused."""
     run = utak.Run(ROOM, mind=Follower)
-    session = run._session
+    session = session_of(run)
     assert session is not None
     with pytest.raises(CannotAdoptError, match="Follower takes no rules"):
         session.adopt(ROOM.content, replace(run.settings, kb_files=("rules.lp",)))

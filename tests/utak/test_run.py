@@ -16,6 +16,11 @@ NEXT_ROOM = utak.Scenario.read(EXAMPLES / "go_next_room")
 PUSH = utak.Scenario.read(EXAMPLES / "push_square_next_room")
 
 
+def session_of(run: utak.Run) -> Session:
+    """Return the session that rests at the last step of a run."""
+    return run._story._moment.sessions[run._story.at]
+
+
 def test_a_run_is_that_of_the_command(tmp_path: Path) -> None:
     log = tmp_path / "run.jsonl"
     assert main(["run", str(EXAMPLES / "go_next_room"), "--seed", "1", "--noise", "0.02", "--log", str(log)]) == 0
@@ -30,6 +35,7 @@ def test_a_run_takes_a_folder() -> None:
     assert utak.Run(str(EXAMPLES / "go_next_room")).episode.record == utak.Run(NEXT_ROOM).episode.record
 
 
+@pytest.mark.long
 def test_a_run_is_followed_step_by_step() -> None:
     run = utak.Run(NEXT_ROOM)
     assert (run.verdict, run.reason, run.finished, len(run.episode)) == (None, "", False, 1)
@@ -49,6 +55,7 @@ def test_a_run_is_followed_step_by_step() -> None:
     assert run.plan.why == run.reason == run.finish().reason
 
 
+@pytest.mark.long
 def test_a_fork_goes_on_like_the_run_it_comes_from() -> None:
     run = utak.Run(PUSH, seed=3, noise=0.02)
     forks = []
@@ -63,6 +70,7 @@ def test_a_fork_goes_on_like_the_run_it_comes_from() -> None:
     assert run.fork().finish().record == whole.record  # of a run that has ended
 
 
+@pytest.mark.long
 def test_a_fork_may_be_disturbed_otherwise() -> None:
     run = utak.Run(PUSH, seed=3, noise=0.05)
     run.step()
@@ -80,6 +88,7 @@ def test_a_fork_may_be_disturbed_otherwise() -> None:
         run.fork(noise=2.0)
 
 
+@pytest.mark.long
 def test_a_fork_may_have_another_goal() -> None:
     run = utak.Run(NEXT_ROOM)
     run.step()
@@ -106,7 +115,7 @@ def test_a_fork_of_a_fork_is_made_anew_after_an_interrupted_step(monkeypatch: py
     second = fork.fork(max_steps=5)
     second.step()
     same = second.fork()
-    session = second._session
+    session = session_of(second)
     assert session is not None
 
     def interrupted() -> None:
@@ -165,6 +174,7 @@ def test_rules_of_users_take_part_and_may_be_asked(tmp_path: Path) -> None:
         utak.Run(NEXT_ROOM, rules=[rules])
 
 
+@pytest.mark.long
 def test_a_run_shows_itself() -> None:
     run = utak.Run(NEXT_ROOM)
     assert repr(run) == "<Run after 0 commands>"
@@ -173,4 +183,3 @@ def test_a_run_shows_itself() -> None:
     run.finish()
     assert repr(run).startswith(f"<Run after {len(run.episode) - 1} commands; done: ")
     assert json.dumps(run.episode.record.header)
-    assert isinstance(run._session, Session)

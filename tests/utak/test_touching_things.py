@@ -61,7 +61,7 @@ bbbbbbbbbbbbbbbbbbbbbb
 @pytest.mark.parametrize(
     ("world", "thing", "goal", "place"),
     [
-        (BESIDE_A_PILLAR, "c", "11 -1", "17.5 3.5"),
+        pytest.param(BESIDE_A_PILLAR, "c", "11 -1", "17.5 3.5", marks=pytest.mark.long),
         (BEHIND_ANOTHER, "a", "2 11", "10.5 13.5"),
         (THROUGH_A_WALL, "c", "-5 3", "9.5 6.5"),
     ],

@@ -13,7 +13,6 @@ actions       how actions are written: as a dictionary, as a box of numbers, as 
 progress      which expectations are met, halt after halt
 game          a table that is played on: commands, rewards, the end
 environment   the environment
-vector        many environments that are stepped together
 pixels        the table as an image
 """
 

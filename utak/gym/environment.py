@@ -1,20 +1,20 @@
 """TABLETOP as a Gymnasium environment."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from utak.geometry.counts.retina import FIELD_COUNT
 from utak.gym.actions import action_form
-from utak.gym.game import Game, Rules, Scenarios, games
-from utak.gym.pixels import Image, image
+from utak.gym.game import Rules, Scenarios, games
+from utak.gym.pixels import image
 from utak.simulator.scenario.picture import draw
-from utak.simulator.world.senses import SENSED_FIELDS, SENSED_NUMBERS, ImpressionCodes
+from utak.simulator.world.senses import SENSED_NUMBERS
 
 MAX_SEEN_LEVEL, MAX_FELT_COLOUR = 7, 26  # the greatest gray level, and the number of the last letter
-MAX_SEED = 2**31  # seeds that are drawn lie below; a convention
+DRAWN_SEEDS = 2**31  # seeds that are drawn lie below; a convention
 
 Observation = dict[str, Any]  # retina and touch, uint8 arrays
 
@@ -86,13 +86,19 @@ class TabletopEnv(gymnasium.Env[Observation, Any]):
         CannotOpenError, BadInputError
             A scenario cannot be read.
         """
-        check_render_mode(render_mode, self.metadata)
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ValueError(f"no such render mode: {render_mode!r}; one of 'ansi' and 'rgb_array' is meant")
         self.render_mode = render_mode
         self._games = games(scenario, Rules(reward, max_steps, noise))
         self._game = self._games[0]
         self._form = action_form(actions, stride)
         self.action_space = self._form.space
-        self.observation_space: spaces.Space[Observation] = observation_space()
+        self.observation_space: spaces.Space[Observation] = spaces.Dict(
+            {
+                "retina": spaces.Box(0, MAX_SEEN_LEVEL, (FIELD_COUNT,), np.uint8),
+                "touch": spaces.Box(0, MAX_FELT_COLOUR, (SENSED_NUMBERS - FIELD_COUNT,), np.uint8),
+            }
+        )
 
     @property
     def table(self) -> Any:
@@ -113,8 +119,8 @@ class TabletopEnv(gymnasium.Env[Observation, Any]):
             `scenario`: the number of the scenario to play on.
         """
         super().reset(seed=seed)
-        self._game = next_game(self._games, self.np_random, options)
-        self._game.begin(int(self.np_random.integers(MAX_SEED)) if seed is None else seed)
+        self._game = self._games[self._number((options or {}).get("scenario"))]
+        self._game.begin(int(self.np_random.integers(DRAWN_SEEDS)) if seed is None else seed)
         return self._observation(), self._info()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -124,49 +130,21 @@ class TabletopEnv(gymnasium.Env[Observation, Any]):
 
     def render(self) -> Any:
         """Return the true table, as text or as an image (rows, columns, 3); None without a render mode."""
-        return None if self.render_mode is None else rendered(self._game, self.render_mode)
+        if self.render_mode is None:
+            return None
+        return draw(self.table.now) if self.render_mode == "ansi" else image(self.table)
 
     def _observation(self) -> Observation:
-        """Return the present impression."""
-        return split(self._game.table.sense())
+        sensed = self._game.table.sense()
+        return {"retina": sensed[:FIELD_COUNT], "touch": sensed[FIELD_COUNT:]}
+
+    def _number(self, named: Any) -> int:
+        """Return the number of the game that the options of a reset name, or else one that is drawn."""
+        if named is None:
+            return int(self.np_random.integers(len(self._games))) if len(self._games) > 1 else 0
+        if not isinstance(named, int | np.integer) or not 0 <= named < len(self._games):
+            raise ValueError(f"there is no scenario {named!r:.200}: there are {len(self._games)}, numbered from 0")
+        return int(named)
 
     def _info(self) -> dict[str, Any]:
-        """Return what is achieved."""
         return {"achieved": self._game.progress.achieved, "share": self._game.progress.share}
-
-
-def observation_space() -> spaces.Space[Any]:
-    """Return the space of impressions."""
-    return spaces.Dict(
-        {
-            "retina": spaces.Box(0, MAX_SEEN_LEVEL, (SENSED_FIELDS,), np.uint8),
-            "touch": spaces.Box(0, MAX_FELT_COLOUR, (SENSED_NUMBERS - SENSED_FIELDS,), np.uint8),
-        }
-    )
-
-
-def split(sensed: ImpressionCodes) -> Observation:
-    """Return impressions in numbers, (..., 168), as observations."""
-    return {"retina": sensed[..., :SENSED_FIELDS], "touch": sensed[..., SENSED_FIELDS:]}
-
-
-def next_game(several: list[Game], random: np.random.Generator, options: dict[str, Any] | None) -> Game:
-    """Return the game that the options of a reset name, or else one that is drawn."""
-    number: int | None = (options or {}).get("scenario")
-    if number is None:
-        return several[int(random.integers(len(several)))] if len(several) > 1 else several[0]
-    if not isinstance(number, int | np.integer) or not 0 <= number < len(several):
-        raise ValueError(f"there is no scenario {number!r:.200}: there are {len(several)}, numbered from 0")
-    return several[number]
-
-
-def check_render_mode(render_mode: str | None, metadata: Mapping[str, Any]) -> None:
-    """Raise ValueError unless a render mode is None or one of those that there are."""
-    if render_mode not in (None, *metadata["render_modes"]):
-        raise ValueError(f"no such render mode: {render_mode!r}; one of 'ansi' and 'rgb_array' is meant")
-
-
-def rendered(game: Game, render_mode: str) -> str | Image:
-    """Return the true table as text or as an image."""
-    table = game.table
-    return draw(table.world, table.polygons, table.utak) if render_mode == "ansi" else image(table)

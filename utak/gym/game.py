@@ -70,7 +70,6 @@ class Game:
         return PlayOutcome(reward, achieved, not achieved and self.steps >= self._most)
 
     def _see(self) -> None:
-        """Let the progress take in the present state."""
         self.progress.see(self.steps, self.table.utak, self.table.polygons)
 
 

@@ -11,8 +11,4 @@ def register_environments() -> None:
     except ImportError as missing:
         raise ImportError(WANTED) from missing
     if ENVIRONMENT_ID not in registry:
-        register(
-            ENVIRONMENT_ID,
-            entry_point="utak.gym.environment:TabletopEnv",
-            vector_entry_point="utak.gym.vector:TabletopVectorEnv",
-        )
+        register(ENVIRONMENT_ID, entry_point="utak.gym.environment:TabletopEnv")

@@ -1,7 +1,7 @@
 """The kinds of this package by name."""
 
 from benchmarks.worlds.odd.kinds import OddWorldMaker
-from benchmarks.worlds.seams import crowded, doors, enclosed, headings, references, walls
+from benchmarks.worlds.seams import crowded, described, doors, enclosed, headings, references, walls
 
 SEAM_KINDS: dict[str, OddWorldMaker] = {
     walls.THING_WALL_KIND: walls.thing_wall,
@@ -9,6 +9,7 @@ SEAM_KINDS: dict[str, OddWorldMaker] = {
     references.REFERENCE_KIND: references.world,
     doors.TWO_DOORS_KIND: doors.two_doors,
     doors.DOOR_RULE_KIND: doors.door_rule,
+    described.DESCRIBED_KIND: described.world,
     enclosed.ENCLOSED_KIND: enclosed.enclosed,
     enclosed.LEANING_KIND: enclosed.leaning,
     crowded.PACKED_KIND: crowded.world,

@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.worlds.floorplans import FloorPlan
 from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt, world_text
 from benchmarks.worlds.walking import corner_box, furthest_corner
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 
 PARAMETERS = "xyzw"  # of the first, second, ... thing of a task
 TRUTH_TOLERANCE = 1e-3  # squares; the same as for expect.lp

@@ -67,7 +67,7 @@ def predicted_outcome(place: Position, polygon: Any, motion: Motion) -> CarryOut
 
 def blocked_by_known(place: Position, polygon: Any, motion: Motion, known: Obstacles) -> CarryOutcome | None:
     """Return the motion as far as its first contact with known obstacles; None when it meets none."""
-    fraction = known.first_contact(ContactBody(polygon, [place]), motion).fraction
+    fraction = known.first_contact(ContactBody(polygon, [place]), motion)
     return partial_outcome(place, polygon, motion, fraction) if fraction < 1.0 else None
 
 

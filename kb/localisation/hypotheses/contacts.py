@@ -62,10 +62,10 @@ class Obstructions:
     def contacts(self, place: Position, polygon: Any, motion: Motion) -> list[ContactHypothesis]:
         """Return all contacts that may have blocked the motion, in the order of the way; [] when nothing can be met."""
         body = ContactBody(polygon, [place])
-        end = self.known.first_contact(body, motion).fraction
+        end = self.known.first_contact(body, motion)
         near = _are_reachable(self._squares, place, polygon, motion)
         open_ = ((square, obstacle) for (square, obstacle), reached in zip(self._open, near, strict=True) if reached)
-        met = ((obstacle.first_contact(body, motion).fraction, square) for square, obstacle in open_)
+        met = ((obstacle.first_contact(body, motion), square) for square, obstacle in open_)
         ordered = sorted(m for m in met if m[0] < end)
         groups = itertools.groupby(ordered, lambda m: round(m[0] / SAME_CONTACT_FRACTION))
         together = [[*group] for _, group in groups]

@@ -185,7 +185,7 @@ def observation_squares(frame: Frame, observations: Sequence[Observation]) -> ND
 
 def place_squares(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the squares of the map frame that contain some places: (n, 2), column and row."""
-    x, y = frame.places_from_utak(places[:, 0], places[:, 1])
+    x, y = frame.place_from_utak(places[:, 0], places[:, 1])
     squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
 

@@ -178,7 +178,6 @@ def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation
 
 def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
     """Return hypotheses of the same map, at least one, as one."""
-    # The likeliest of their frames, and what is against it.
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
     against = 0.0 if likeliest.is_centred or not area else OFF_CENTRE_COST - math.log(area)

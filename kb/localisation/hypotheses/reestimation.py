@@ -106,10 +106,6 @@ def reestimate_walk(
     prefixes: Callable[[Frame], ReplayPrefixes] | None = None,
 ) -> Iterator[ReestimatedWalk]:
     """Yield other ends of a motion, each with the frame in which no observation contradicts another."""
-    # What is yielded holds the frame hypothesis, the shift of all observations since the motion, (east, north) in
-    # squares, Utak's own frame, whether something known blocked it, the number of fields, over all observations, that
-    # contradict the map (`residual`), and where the newest observation was made, (east, north) in squares, Utak's own
-    # frame.
     newest = motion.number == len(observations) - 1
     for hypothesis in _likeliest_hypotheses(motion.hypotheses):
         frame = hypothesis.frame
@@ -135,8 +131,6 @@ def _other_ends(
     begun: ReplayPrefixes,
 ) -> Iterator[ReestimatedWalk]:
     """Yield the other ends of one motion in one frame, with contacts known and unknown, in the order of the way."""
-    # Each holds the shift of all observations since the motion and where the newest was made, (east, north) in squares,
-    # Utak's own frame, and the number of fields that contradict it.
     frame, number = hypothesis.frame, motion.number
     believed, walk = observations[number].place, WalkInFrame(motion, frame, observations)
     judged: dict[bytes, RemappedMap | None] = {}

@@ -143,7 +143,9 @@ class RemapCache:
         """Begin with the map of the believed frame, which is taken to be free of contradictions."""
         self._frame, self._observations, self._held_objects = frame, observations, held_objects
         believed = RemappedMap(occupancy, held_objects, 0)
-        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._key(frame): (None, believed)}
+        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {
+            _map_key(frame, observations): (None, believed)
+        }
         self._by_frame: dict[Frame, RemappedMap] = {}
 
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
@@ -154,7 +156,7 @@ class RemapCache:
 
     def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
         """Return the map of a frame, and the held objects in it, replayed or shifted from one of the same squares."""
-        key = self._key(frame)
+        key = _map_key(frame, self._observations)
         if key not in self._known or (self._known[key][1].incomplete and not only_whether):
             found = remap(
                 frame, self._frame, self._observations, self._held_objects.values(), only_whether=only_whether
@@ -168,29 +170,41 @@ class RemapCache:
         }
         return under._replace(held_objects=held_objects)
 
-    def _key(self, frame: Frame) -> tuple[int, bytes]:
-        """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes)."""
-        return frame.angle, observation_squares(frame, self._observations).tobytes()
+
+def _map_key(frame: Frame, observations: Sequence[Observation]) -> tuple[int, bytes]:
+    """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes)."""
+    return frame.angle, observation_squares(frame, observations).tobytes()
 
 
 class ReplayPrefixes:
     """Replays of the first observations in one frame, for any number of them; each observation is integrated once."""
 
     def __init__(
-        self, frame: Frame, observations: Sequence[Observation], held_objects: Mapping[str, HeldObject]
+        self,
+        frame: Frame,
+        observations: Sequence[Observation],
+        held_objects: Mapping[str, HeldObject],
+        alike: dict[tuple[int, bytes], MapReplay] | None = None,
     ) -> None:
-        """Begin with no observation."""
+        """Begin with no observation. alike : replays that frames share, without held objects, by angle and squares."""
         self._observations, self._held_objects = observations, held_objects
-        self._known = {0: MapReplay(frame, frame)}
+        self._known, self._frame, self._alike = {0: MapReplay(frame, frame)}, frame, {} if alike is None else alike
 
     def first(self, number: int) -> MapReplay:
         """Return the replay of the first `number` observations; it is kept, so copy it before going on with it."""
-        if number not in self._known:
-            nearest = max(n for n in self._known if n < number)
-            replay = self._known[nearest].copy()
-            begin = nearest + 1 + REPLAY_INTERVAL - (nearest + 1) % REPLAY_INTERVAL
-            for stop in (*range(begin, number, REPLAY_INTERVAL), number):
-                self._known[stop] = replay.advance(self._observations, self._held_objects, stop).copy()
+        if number in self._known:
+            return self._known[number]
+        key = _map_key(self._frame, self._observations[:number])
+        if key in self._alike:  # every observation fell on the same square
+            self._known[number] = replay = self._alike[key].copy()
+            replay.new = replay.old = self._frame
+            return replay
+        nearest = max(n for n in self._known if n < number)
+        replay = self._known[nearest].copy()
+        begin = nearest + 1 + REPLAY_INTERVAL - (nearest + 1) % REPLAY_INTERVAL
+        for stop in (*range(begin, number, REPLAY_INTERVAL), number):
+            self._known[stop] = replay.advance(self._observations, self._held_objects, stop).copy()
+        self._alike[key] = self._known[number]
         return self._known[number]
 
 
@@ -265,7 +279,6 @@ def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
 
 def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
     """Return an object at a pose, map frame of `new`."""
-    # Its outline (shapely Polygon, squares) turned and shifted there.
     began = np.array([_centroid(taken.first, new)]) - pose.taken
     aside = Rotate(pose.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(pose.middle[0] + float(aside[0]), pose.middle[1] + float(aside[1]))

@@ -19,6 +19,7 @@ MAX_WALK_SLIP = 2  # squares from the predicted end within which a slipped walk 
 LINE_DISTANCE = 1e-6  # squares from a grid line to a place right beside it: contacts of the physics are that exact
 MIN_PASSED = 0.1  # squares of way through a square that tell that it was passed; less may be an error of the place
 GRID_LINE_TOLERANCE = 1e-3  # squares from a grid line that count as on it (convention)
+LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an earlier motion counts as likely; tuned
 MAX_KEPT_WAYS = 1024  # ways whose squares are kept: bounds memory
 
 
@@ -45,9 +46,10 @@ class MotionHypothesis(NamedTuple):
     # after the observation
     alternative_ends: tuple[tuple[Position, float], ...] = ()
 
-    def likely_ends(self, min_chance: float) -> list[Position]:
-        """Return the other ends of a probability above `min_chance`: (east, north) in squares, Utak's own frame."""
-        return [there for there, chance in self.alternative_ends if chance > min_chance]
+    @property
+    def likely_ends(self) -> list[Position]:
+        """The other ends that count as likely: (east, north) in squares, Utak's own frame."""
+        return [there for there, chance in self.alternative_ends if chance > LIKELY_END_CHANCE]
 
     def chance_of_end(self, place: Position) -> float | None:
         """Return the probability of an end at `place`; None when it is no known other end."""

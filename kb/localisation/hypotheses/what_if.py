@@ -146,9 +146,6 @@ class Surprise:
         only_whether: bool = False,
     ) -> WhatIf:
         """Return what contradicts a frame, with the outcome of the motion that fits it best."""
-        # The result holds `frame`, the hypotheses given, Utak's place after the command, (x, y) in squares, map frame
-        # of `frame`, the outcome for the object in hand (None when none was to be moved, or when `only_whether` found a
-        # contradiction before), and `residual`: how many fields contradict, over all observations.
         if only_whether and (refuted := self.refuted(frame, hypotheses)) is not None:
             return refuted._replace(searched=searched)
         if self.carried is None:  # it went as commanded

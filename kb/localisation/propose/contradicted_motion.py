@@ -69,9 +69,8 @@ def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
     """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin."""
     moved = held.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (held, moved))
-    whole = (
-        before < GRID_CORNER_TOLERANCE
-    )  # not turned at all, or all the way round: then how far it is astray is unknown
+    # Not turned at all, or all the way round: then how far it is astray is unknown
+    whole = before < GRID_CORNER_TOLERANCE
     return moved if whole else replace(moved, astray=held.astray * after / before)
 
 

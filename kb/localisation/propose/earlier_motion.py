@@ -81,10 +81,10 @@ class CarriedMotion:
         # OCCUPIED for something known, OPEN or FREE (1, -1, 0).
         # FREE if something known would have blocked it before, or if nothing can be met there;
         body, obstructions = ContactBody(self._polygon, [self._place]), self._obstructions(occupancy)
-        known = obstructions.known.first_contact(body, self._motion).fraction
+        known = obstructions.known.first_contact(body, self._motion)
         if things:
             stood = Obstacles([square_polygon(square) for square in things])
-            known = min(known, stood.first_contact(body, self._motion).fraction)
+            known = min(known, stood.first_contact(body, self._motion))
         if known < end.progress - SAME_CONTACT_FRACTION:
             return FREE
         if known < 1.0 and known < end.progress + SAME_CONTACT_FRACTION:
@@ -122,8 +122,6 @@ def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
 
 def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
-    # Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation
-    # of the newest observation.
     observations, frame = surprise.observations, surprise.frame
     believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
@@ -154,8 +152,6 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
 
 def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
-    # Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation
-    # of the newest observation in that frame.
     origins = any_origin((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:
         corrected, correction = _corrected(surprise, motion, end)

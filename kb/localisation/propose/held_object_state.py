@@ -63,7 +63,7 @@ def _touching_places(polygon: Any, motion: Translate, known: Obstacles) -> Itera
     for step in range(-number, number + 1):
         aside = step * LEANING_STEP
         back = motion.steered(-MAX_LEANING_DISTANCE, aside).carry(polygon)
-        fraction = known.first_contact(ContactBody(back), onward).fraction
+        fraction = known.first_contact(ContactBody(back), onward)
         far = math.hypot(aside, (2 * fraction - 1) * MAX_LEANING_DISTANCE)
         if 0 < fraction < 1 and far <= MAX_LEANING_DISTANCE:
             yield far, onward.part(fraction).carry(back)

@@ -13,7 +13,7 @@ from utak.kb.localisation.hypotheses.explanation import Explanation, reestimated
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
 from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
 from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_walk
-from utak.kb.localisation.hypotheses.remap import ReplayPrefixes, remap
+from utak.kb.localisation.hypotheses.remap import MapReplay, ReplayPrefixes, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from utak.kb.perception.frame import CENTRE, Frame
 
@@ -38,11 +38,10 @@ def blocked_walks_with_origin(
     motions: Sequence[MotionHypothesis], believed: Frame, observations: Sequence[Observation]
 ) -> list[Explanation]:
     """Return explanations that one of the last walks was blocked, with another origin, without any contradiction."""
-    # Each has the frame, the place of the newest observation (x, y) in squares, map frame of it, the shift of all since
-    # that walk, and a residual of 0; those of the oldest walk come first.
     origins = tuple(exact_hypothesis(frame) for frame in frames_of_coarse_origins(believed))
     alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}
-    prefixes = cache(lambda frame: ReplayPrefixes(frame, observations, {}))
+    shared: dict[tuple[int, bytes], MapReplay] = {}
+    prefixes = cache(lambda frame: ReplayPrefixes(frame, observations, {}, shared))
     for motion in motions[-MAX_WALKS_WITH_ORIGIN:]:
         for walk in reestimate_walk(motion._replace(hypotheses=origins), believed, observations, prefixes):
             if not walk.residual:

@@ -65,8 +65,6 @@ class TurnOriginCell(NamedTuple):
 
 def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
     """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none."""
-    # The result holds the frame (believed angle, that origin), the hypotheses left, Utak's place (x, y) in squares, map
-    # frame of that frame, the outcome for the object (None without a turn), and a residual of 0.
     points = _origins_left(surprise)
     error = math.hypot(*grid_cell_size(points)) / 2
     tried = (surprise.evaluate_frame(point.frame, (point,), origin_error=error, only_whether=True) for point in points)
@@ -103,8 +101,6 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
 
 def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> WhatIf:
     """Return what contradicts an origin and an end of the turn in a cell."""
-    # The result holds the frame with that origin, Utak's place (x, y) in squares, map frame of it, the outcome of the
-    # turn (None when earlier observations alone contradict the origin), and the residual, a number of fields.
     frame = Frame(surprise.frame.angle, cell.origin)
     left = (exact_hypothesis(frame),)
     refuted = surprise.refuted(frame, left)

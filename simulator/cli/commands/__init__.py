@@ -1,5 +1,6 @@
-"""The subcommands of `utak`, one a module: `add` declares it, `execute` runs it and returns the exit code.
+"""The subcommands of `utak`, one a module, whose function `execute` runs it and returns the exit code.
 
+given   what several subcommands are given
 run     run the robot on a scenario
 test    run scenarios as tests
 sweep   run scenarios with many seeds and noises

@@ -1,22 +1,14 @@
 """`utak warm`: compile the geometry kernels, so that no run has to wait for them."""
 
 import argparse
-from typing import Any
 
+from utak.geometry.kernels.jit import kernel_status
+from utak.simulator.run.warming import count_cached_kernels, warm_all
 from utak.simulator.terminal import exits
-
-
-def add(parts: Any) -> None:
-    """Declare the subcommand."""
-    part = parts.add_parser("warm", help="compile the geometry kernels now, so that no run waits for them")
-    part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Compile all kernels and print their number."""
-    from utak.geometry.kernels.jit import kernel_status
-    from utak.simulator.run.warming import count_cached_kernels, warm_all
-
     warm_all()
     count, cache_is_writable = kernel_status()
     if not count:

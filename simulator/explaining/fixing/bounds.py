@@ -11,10 +11,8 @@ from shapely import affinity
 
 from utak.geometry.cspace.plan_motion import Inside, plan_motion
 from utak.geometry.motion.se2 import Pose
-from utak.kb.language.terms import Text
-from utak.kb.language.wkt import parse_wkt
 from utak.simulator.explaining.fixing.gaps import Gap, floor_of, solid_of
-from utak.simulator.scenario.expectation import EXPECTATION_TOLERANCE
+from utak.simulator.scenario.expectation import grown_region
 from utak.simulator.scenario.scenario import Scenario
 from utak.simulator.world.physics import table_edge
 from utak.simulator.world.world import Thing, World
@@ -30,10 +28,8 @@ def refutation(scenario: Scenario) -> str:
     things = {thing.name: thing for thing in scenario.world.movable}
     for fact in scenario.expectations or ():
         thing = things.get(str(fact.args[0])) if fact.name == "inside" else None
-        if thing is not None and isinstance(fact.args[1], Text):
-            region = parse_wkt(fact.args[1].value).buffer(EXPECTATION_TOLERANCE)
-            if _cannot_come(scenario.world, thing, region):
-                return str(fact)
+        if thing is not None and _cannot_come(scenario.world, thing, grown_region(fact)):
+            return str(fact)
     return ""
 
 

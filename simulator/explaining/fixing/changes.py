@@ -5,14 +5,16 @@ A change is small and alone; several together are a tuple of changes. Places are
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.language.terms import Fact, Symbol
-from utak.kb.language.vocabulary import CONSTRAINT_GOALS
-from utak.kb.task.task import WRAPPING_GOALS, Task
+from utak.kb.language.goal_words import CONSTRAINT_GOALS, ROBOT
+from utak.kb.language.reader import facts_from_text
+from utak.kb.language.terms import Fact
+from utak.kb.task.task import Task, inner_goal, start_facts_of, task_from_texts
+from utak.simulator.episode.record import fact_lines
 from utak.simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide, widened
-from utak.simulator.explaining.fixing.recorded import facts_of, start_text, task_from_texts
 from utak.simulator.scenario.expectation import about_things, should_fail
 from utak.simulator.scenario.scenario import Scenario
 from utak.simulator.scenario.settings import Settings
@@ -88,16 +90,14 @@ def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[WorldCh
     made = tuple(changes)
     if not made:
         return Variant(scenario, settings)
-    world: World | None = scenario.world
     task: Task | None = scenario.task
     away = {change.name for change in made if isinstance(change, Away)}
     dropped = [change for change in made if isinstance(change, Dropped)]
-    assert world is not None
-    world = replace(
-        world,
-        movable=tuple(thing for thing in world.movable if thing.name not in away),
-        fixed=tuple(thing for thing in world.fixed if thing.name not in away),
-    )
+    left: dict[str, Any] = {
+        kind: tuple(thing for thing in getattr(scenario.world, kind) if thing.name not in away)
+        for kind in ("movable", "fixed")
+    }
+    world: World | None = replace(scenario.world, **left)
     for change in made:
         if isinstance(change, Wider) and world is not None:
             world = widened(world, change.gap, change.side, change.by)
@@ -121,12 +121,8 @@ def without_goals(task: Task, indices: set[int]) -> Task | None:
         for index, goal in enumerate(left):
             if goal.name == "then" and all(_is_constraint(one) for one in left[:index]):
                 texts[index] = f"first({goal.args[0]})"
-    start = start_text(
-        {name: parameter.kind for name, parameter in task.parameters.items()},
-        [(claim.fact, claim.confidence) for claim in task.claims],
-    )
     try:
-        return task_from_texts(start, "".join(f"{text}.\n" for text in texts))
+        return task_from_texts(fact_lines(start_facts_of(task)), fact_lines(texts))
     except BadInputError:
         return None
 
@@ -143,7 +139,6 @@ def _is_constraint(goal: Fact) -> bool:
 
 
 def _is_wanted(expectations: tuple[Fact, ...] | None, away: set[str]) -> bool:
-    """Return whether expect.lp says where one of some things must be."""
     return any(
         named.name in PLACE_EXPECTATIONS and str(thing) in away
         for fact in expectations or ()
@@ -159,7 +154,8 @@ def _conditions(scenario: Scenario, dropped: list[Dropped], away: set[str], slow
     if scenario.expectations is None:
         return None
     failing = should_fail(scenario.expectations)
-    subjects = {_is_utak(str(_goal(change.goal).args[0])) for change in dropped if not change.is_constraint}
+    goals = (facts_from_text(f"{change.goal}.")[0] for change in dropped if not change.is_constraint)
+    subjects = {str(inner_goal(goal).args[0]) == ROBOT for goal in goals}
 
     def is_asked(fact: Fact) -> bool:
         if fact.name == "fails" or (failing and fact.name in ("unmoved", "within")):
@@ -168,20 +164,7 @@ def _conditions(scenario: Scenario, dropped: list[Dropped], away: set[str], slow
             return not slow
         if fact.name == "unmoved":
             return str(fact.args[0]) not in away
-        return _is_utak(str(fact.args[0])) not in subjects
+        return (str(fact.args[0]) == ROBOT) not in subjects
 
     kept = tuple(fact for fact in scenario.expectations if is_asked(fact))
     return kept or None
-
-
-def _goal(text: str) -> Fact:
-    """Return the goal in a text, without first(...), then(...) and prefer(...)."""
-    (fact,) = facts_of([text])
-    inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
-    assert isinstance(inner, Symbol)
-    return inner
-
-
-def _is_utak(name: str) -> bool:
-    """Return whether a name is the robot's."""
-    return name == "utak"

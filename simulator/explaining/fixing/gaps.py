@@ -17,6 +17,7 @@ from shapely import affinity
 
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Labels
+from utak.geometry.passages.necks import halfway
 from utak.geometry.raster.components import components
 from utak.geometry.raster.rasterize import squares
 from utak.simulator.world.world import World
@@ -92,9 +93,9 @@ def _passages_in(world: World, solid: Any) -> list[Gap]:
     found = []
     for passage in Screen(free).passages(MIN_NECK_RATIO):
         (a, b), (c, d) = ([(x / cells, y / cells) for x, y in mouth] for mouth in passage.mouths)
-        if math.dist(_halfway(a, c), _halfway(b, d)) < GAP_LENGTH_TOLERANCE:
+        if math.dist(halfway(a, c), halfway(b, d)) < GAP_LENGTH_TOLERANCE:
             continue  # its mouths cross each other: there is no direction in which it could be made wider
-        gap = _gap_between(_halfway(a, c), _halfway(b, d), shapely.MultiPoint([a, b, c, d]), passage.width / cells)
+        gap = _gap_between(halfway(a, c), halfway(b, d), shapely.MultiPoint([a, b, c, d]), passage.width / cells)
         gap = replace(gap, room=min(passage.sides) / cells)
         found.append(gap if cells == 1 else _measured(solid, gap))
     return found
@@ -106,11 +107,6 @@ def _gap_between(left: XY, right: XY, mouths: Any, width: float) -> Gap:
     along = ((left[0] - right[0]) / length, (left[1] - right[1]) / length)
     across = [y * along[0] - x * along[1] for x, y in shapely.get_coordinates(mouths).tolist()]
     return Gap(left, right, width, max(across) - min(across), mouths.convex_hull.wkt, along, 0.0)
-
-
-def _halfway(one: XY, other: XY) -> XY:
-    """Return the point halfway between two points."""
-    return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
 
 def _measured(solid: Any, rough: Gap) -> Gap:
@@ -147,7 +143,7 @@ def _measured_once(solid: Any, rough: Gap) -> Gap:
     corners = [
         (at * along[0] - beside * along[1], at * along[1] + beside * along[0]) for at in ends for beside in (low, high)
     ]
-    gap = _gap_between(_halfway(*corners[2:]), _halfway(*corners[:2]), shapely.MultiPoint(corners), round(width, 9))
+    gap = _gap_between(halfway(*corners[2:]), halfway(*corners[:2]), shapely.MultiPoint(corners), round(width, 9))
     return replace(gap, room=rough.room)
 
 

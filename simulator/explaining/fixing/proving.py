@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from utak.simulator.episode.episode import EpisodeLog
 from utak.simulator.explaining.fixing.bounds import refutation
 from utak.simulator.explaining.fixing.changes import Variant, WorldChange, variant_of
-from utak.simulator.explaining.fixing.leading import Leader
+from utak.simulator.explaining.fixing.leading import lead
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Result, RobotMaker, Session
 from utak.simulator.scenario.scenario import Scenario
@@ -56,7 +56,8 @@ class VariantProver:
     make: RobotMaker = make_robot  # makes the robot
     runs: int = 0  # how many runs there were
     commands: int = 0  # how many commands they took together
-    _known: dict[tuple[WorldChange, ...], Outcome] = field(default_factory=dict)
+    # All changes that were tried, with how they ended, in their order
+    tried: dict[tuple[WorldChange, ...], Outcome] = field(default_factory=dict)
     _proofs: int = 0
     _begun: float = field(default_factory=time.monotonic)
 
@@ -67,62 +68,40 @@ class VariantProver:
     def outcome(self, changes: tuple[WorldChange, ...]) -> Outcome:
         """Return how the scenario with some changes ends; it is run unless that is known."""
         # Raises BudgetEndedError when no run is left.
-        if changes not in self._known:
+        if changes not in self.tried:
             variant = self.variant(changes)
             refuted = "" if variant is None or not changes else refutation(variant.scenario)
             if variant is None:
-                self._known[changes] = IMPOSSIBLE_CHANGE
+                self.tried[changes] = IMPOSSIBLE_CHANGE
             elif refuted:
-                self._count_proof()
-                self._known[changes] = Outcome(False, None, refuted)
+                self._check_time()
+                self._proofs += 1
+                if self._proofs > PROOFS_PER_RUN * self.budget.runs:
+                    ended = f"the budget of {self.budget.runs} runs ended with {self._proofs - 1} proofs"
+                    raise BudgetEndedError(ended)
+                self.tried[changes] = Outcome(False, None, refuted)
             else:
-                self._known[changes] = self._run(changes, variant)
-        return self._known[changes]
-
-    def follows(self, changes: tuple[WorldChange, ...], outcome: Outcome) -> None:
-        """Keep how changes end that need no run of their own, because another run shows it."""
-        self._known[changes] = outcome
-
-    @property
-    def tried(self) -> dict[tuple[WorldChange, ...], Outcome]:
-        """Return all changes that were tried, with how they ended, in their order."""
-        return dict(self._known)
-
-    def _count_proof(self) -> None:
-        """Count a proof of geometry; raise BudgetEndedError when there were as many as the budget allows."""
-        self._check_time()
-        self._proofs += 1
-        if self._proofs > PROOFS_PER_RUN * self.budget.runs:
-            raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended with {self._proofs - 1} proofs")
+                self.tried[changes] = self._run(changes, variant)
+        return self.tried[changes]
 
     def _run(self, changes: tuple[WorldChange, ...], variant: Variant) -> Outcome:
-        """Run a scenario with changes."""
         if self.runs >= self.budget.runs:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")
         self._check_time()
         self.runs += 1
-        leader = Leader(variant.led[0], self.make) if variant.led else None
-        session = Session(
-            variant.scenario, variant.settings, self.make if leader is None else leader.make, EpisodeLog(None)
-        )
+        session = Session(variant.scenario, variant.settings, self.make, EpisodeLog(None))
         session.wake()
-        arrived = leader is None or leader.lead(session, self._after_step)
+        arrived = not variant.led or lead(session, variant.led[0], self._check_time)
         led = session.line["step"]
         while arrived and not session.finished:
             session.step()
-            self._after_step(session)
+            self._check_time()
         self.commands += session.line["step"]
-        outcome = Outcome(False, None, "", led)
-        if arrived:
-            result = session.end()
-            works = result.believed and result.verdict == "done" and result.achieved is not False
-            outcome = Outcome(works, result, "", led)
+        result = session.end() if arrived else None
+        works = result is not None and result.verdict == "done" and result.believed and result.achieved is not False
+        outcome = Outcome(works, result, "", led)
         self.watch(self.runs, changes, outcome)
         return outcome
-
-    def _after_step(self, session: Session) -> None:
-        """End the run when the time is up."""
-        self._check_time()
 
     def _check_time(self) -> None:
         """Raise BudgetEndedError when the time is up."""

@@ -4,7 +4,6 @@ In words all places are in the robot's frame, as in its own reasons: (east, nort
 being the way it faced then. The JSON values have them in the table's frame as well.
 """
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from utak.simulator.explaining.fixing.changes import Away, Dropped, Led, MoreCom
 from utak.simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide
 from utak.simulator.explaining.fixing.proving import Outcome
 from utak.simulator.explaining.fixing.search import Fix, FixReport, WorldChanges
+from utak.simulator.terminal.action_in_words import truth_in_words
 from utak.simulator.world.world import World
 
 COMPASS_WORDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
@@ -27,7 +27,25 @@ FRAME_NOTE = (
 
 def report_text(report: FixReport, depth: Depth) -> str:
     """Return the answer in words."""
-    return "\n".join(_lines(report, depth))
+    world = report.run.scenario.world
+    if report.is_needless:
+        return "nothing needs to be changed: the run, repeated as it is recorded, ends in done"
+    lines = [
+        f"{changes_in_words(fix.changes, world)}: {outcome_in_words(fix.outcome)}{_proof_in_words(fix, report)}"
+        for fix in report.fixes
+    ]
+    failed = _failed(report)
+    if depth == Depth.LONG:
+        lines += [
+            f"tried: {changes_in_words(changes, world)}: {outcome_in_words(outcome)}" for changes, outcome in failed
+        ]
+    if depth != Depth.SHORT:
+        refuted = sum(bool(outcome.refuted) for _, outcome in failed)
+        geometry = f", {refuted} of them by geometry alone" if refuted else ""
+        count = len(failed) + sum(outcome.works for changes, outcome in report.tried if changes)
+        ran = f"{count} changes tried in {report.runs} runs, {report.commands} commands"
+        lines += [f"{ran}; {len(failed)} failed{geometry}", FRAME_NOTE]
+    return "\n".join(lines if report.fixes else ["no change was found with which it works", *lines])
 
 
 def report_values(report: FixReport) -> dict[str, Any]:
@@ -95,34 +113,10 @@ def outcome_in_words(outcome: Outcome) -> str:
     if outcome.result is None:
         return "the robot could not be led there" if outcome.led_commands else "this cannot be made"
     result = outcome.result
-    truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
-    return f"{result.verdict} in {result.steps} steps{truth}"
-
-
-def _lines(report: FixReport, depth: Depth) -> Iterator[str]:
-    """Yield the lines of the answer."""
-    world = report.run.scenario.world
-    if report.is_needless:
-        yield "nothing needs to be changed: the run, repeated as it is recorded, ends in done"
-        return
-    for fix in report.fixes:
-        yield f"{changes_in_words(fix.changes, world)}: {outcome_in_words(fix.outcome)}{_proof_in_words(fix, report)}"
-    if not report.fixes:
-        yield "no change was found with which it works"
-    failed = _failed(report)
-    if depth == Depth.LONG:
-        for changes, outcome in failed:
-            yield f"tried: {changes_in_words(changes, world)}: {outcome_in_words(outcome)}"
-    if depth != Depth.SHORT:
-        refuted = sum(bool(outcome.refuted) for _, outcome in failed)
-        geometry = f", {refuted} of them by geometry alone" if refuted else ""
-        count = len(failed) + sum(outcome.works for changes, outcome in report.tried if changes)
-        yield f"{count} changes tried in {report.runs} runs, {report.commands} commands; {len(failed)} failed{geometry}"
-        yield FRAME_NOTE
+    return f"{result.verdict} in {result.steps} steps{truth_in_words(result.achieved)}"
 
 
 def _failed(report: FixReport) -> list[tuple[WorldChanges, Outcome]]:
-    """Return what was tried and does not work, without what cannot be made."""
     return [
         (changes, outcome)
         for changes, outcome in report.tried
@@ -131,15 +125,8 @@ def _failed(report: FixReport) -> list[tuple[WorldChanges, Outcome]]:
 
 
 def _outcome_values(outcome: Outcome) -> dict[str, Any]:
-    """Return how changes ended, as JSON values."""
-    result = outcome.result
-    return {
-        "verdict": None if result is None else result.verdict,
-        "steps": None if result is None else result.steps,
-        "achieved": None if result is None else result.achieved,
-        "reason": None if result is None else result.reason,
-        "refuted": outcome.refuted or None,
-    }
+    values = {name: getattr(outcome.result, name, None) for name in ("verdict", "steps", "achieved", "reason")}
+    return values | {"refuted": outcome.refuted or None}
 
 
 def _proof_in_words(fix: Fix, report: FixReport) -> str:
@@ -152,7 +139,6 @@ def _proof_in_words(fix: Fix, report: FixReport) -> str:
 
 
 def _in_words(change: WorldChange, world: World) -> str:
-    """Return a change in words."""
     match change:
         case Away(name):
             kind = "" if any(thing.name == name for thing in world.movable) else "fixed "
@@ -182,7 +168,6 @@ def _side_in_words(gap: Gap, side: GapSide, world: World) -> str:
 
 
 def _middle(change: Wider) -> XY:
-    """Return the middle of a new door, (x, y) in the table frame."""
     (x, y), (dx, dy) = change.gap.place, change.gap.along
     return x + dx * change.by / 2, y + dy * change.by / 2
 
@@ -194,13 +179,11 @@ def _place_of(name: str, world: World) -> XY:
 
 
 def _places(world: World, **places: XY) -> dict[str, Any]:
-    """Return places in both frames, as JSON values."""
     robot = {name: [round(value, 6) for value in _in_robot_frame(world, place)] for name, place in places.items()}
     return {"table": {name: list(place) for name, place in places.items()}, "robot": robot}
 
 
 def _point(world: World, place: XY) -> str:
-    """Return a place of the table frame as text, in the robot's frame."""
     east, north = (round(value, 2) + 0.0 for value in _in_robot_frame(world, place))
     return f"({east:g}, {north:g})"
 

@@ -105,7 +105,7 @@ class FixSearch:
             outcome = self.prover.outcome((longer,))
             if outcome.works and outcome.result is not None:
                 enough = (MoreCommands(outcome.result.steps),)
-                self.prover.follows(enough, outcome)
+                self.prover.tried[enough] = outcome  # no run of its own is needed
                 self._fixes.append(enough)
 
     def singles(self, candidates: Candidates) -> list[WorldChange]:
@@ -168,11 +168,9 @@ class FixSearch:
         return tuple(fixes)
 
     def _works(self, changes: WorldChanges) -> bool:
-        """Return whether changes work."""
         return self.prover.outcome(changes).works
 
     def _is_known(self, changes: WorldChanges, works: bool) -> bool:
-        """Return whether changes are known to work, or to fail."""
         outcome = self.prover.tried.get(changes)
         return outcome is not None and outcome.works == works
 

@@ -1,6 +1,6 @@
 // The two maps: the table as it is, and what the robot believes of it.
 
-const RETINA_REACH = 16; // squares: the retina covers 32 x 32 squares about the robot's own square
+const RETINA_REACH = RETINA_ZONES.at(-1)[0]; // squares: the retina covers 32 x 32 squares about the robot's own square
 const MARGIN = 2; // squares about what is believed to be floor or a thing
 const OUTSIDE_SHARE = 0.25; // of the table's greater side: how far beyond the table is shown at most
 const LABEL_SIZE = 11; // pixels

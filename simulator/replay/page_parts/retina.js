@@ -1,17 +1,17 @@
-// The retina: what 160 fields observe, what was predicted for them, and the difference.
+// The retina: what its fields observe, what was predicted for them, and the difference. RETINA_ZONES is how far each zone
+// reaches, and the side of its fields, in squares; it comes with the page.
 
-const ZONES = [[4, 1], [8, 2], [16, 4]]; // how far a zone reaches, and the side of its fields, in squares
 const FIELDS = retinaFields();
-const isDigits = (text) => typeof text === "string" && /^[0-7]{160}$/.test(text);
+const isDigits = (text) => typeof text === "string" && text.length === FIELDS.length && /^[0-7]*$/.test(text);
 const STATUS = { p: "predicted", e: "explained", n: "noise" }, STATUS_MARKS = { explained: "dot", noise: "cross" };
-const ALL_FIELDS = "-16 -16 32 32", INNER_FIELDS = "-8 -8 16 16";
+const [INNER_FIELDS, ALL_FIELDS] = RETINA_ZONES.slice(-2).map(([reach]) => `${-reach} ${-reach} ${2 * reach} ${2 * reach}`);
 
 // East, north and side of each field, in squares from the robot's own square; zone by zone, from north to south and from
 // west to east.
 function retinaFields() {
   const fields = [];
   let inner = 0;
-  for (const [reach, side] of ZONES) {
+  for (const [reach, side] of RETINA_ZONES) {
     for (let north = reach - side; north >= -reach; north -= side) {
       for (let east = -reach; east < reach; east += side) {
         if (!(east >= -inner && east < inner && north >= -inner && north < inner)) fields.push({ east, north, side });
@@ -102,9 +102,9 @@ function drawRetinas({ observed, predicted, difference }, line, options) {
   const recorded = fields[0].low !== null, states = `${count("predicted")} predicted, ${count("explained")} explained, ${count("noise")} noise`;
   const occupied = fields.filter((field) => field.level > 0).length, exact = fields.filter((field) => field.low === field.high).length;
   fillRetina(observed, fields.map(({ level, status }) => [level, level, status, String(level)]),
-    `${occupied} of 160 fields show something`, options);
+    `${occupied} of ${FIELDS.length} fields show something`, options);
   fillRetina(predicted, fields.map(({ low, high, status }) => [low, high, status, low === null ? "" : low === high ? String(low) : `${low}-${high}`]),
-    recorded ? `${exact} of 160 fields predicted exactly` : "not recorded in this episode", options);
+    recorded ? `${exact} of ${FIELDS.length} fields predicted exactly` : "not recorded in this episode", options);
   fillRetina(difference, fields.map(({ surplus, status }) => {
     const text = surplus ? (surplus > 0 ? "+" : "−") + Math.abs(surplus) : "";
     return [Math.abs(surplus), Math.abs(surplus), status, text];

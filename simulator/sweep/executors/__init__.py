@@ -3,11 +3,9 @@
 Modules in reading order:
 
 tasks           a task, its outcome, and what an executor is
-in_process      one after the other in this process
 worker          the program of a worker process
 task_process    the handle of a worker process: limit of time, death, restart
 processes       several worker processes on this machine
 code_identity   which state of Utak's code this is, and the libraries that decide results
-cluster_worker  the part on a Dask worker: it passes tasks to processes
 cluster         the workers of a Dask scheduler
 """

@@ -1,17 +1,18 @@
 """A task, its outcome, and what an executor is. Tasks and outcomes are JSON values, so they can travel."""
 
-import importlib
 import json
 import time
 import traceback
 from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 
 # How a task can fail: it took too long, its process ended, or it raised an exception.
 TOO_LONG, DIED, RAISED = "time", "died", "error"
+TRYING_FUNCTION = "utak.simulator.testing.suite:tried"  # what a worker does for a scenario that is tested
 MAX_REASON_LENGTH = 500  # characters of a failure's reason; a convention
 
 
@@ -33,23 +34,21 @@ class TaskOutcome(NamedTuple):
     seconds: float = 0.0  # the wall-clock time that it took
 
 
+def bug_of(outcome: TaskOutcome) -> str:
+    """Return the message about a process that did not tell how the scenario came out that it tried."""
+    return f"this is a bug of ours: {outcome.reason.replace('its process', 'the process that runs the scenario', 1)}"
+
+
 # Carries tasks out and yields (index of the task, outcome) as they end, in any order, each task once. Closing the
 # iterator ends what is under way.
 Executor = Callable[[Sequence[WorkerTask]], Generator[tuple[int, TaskOutcome], None, None]]
-
-
-def named_function(name: str) -> Callable[[Any], Any]:
-    """Return the function "module:name"; raise ImportError or AttributeError when there is none."""
-    module, _, inner = name.partition(":")
-    found: Callable[[Any], Any] = getattr(importlib.import_module(module), inner)
-    return found
 
 
 def carry_out(task: WorkerTask) -> TaskOutcome:
     """Call the function of a task in this process, without a limit of time, and return the outcome."""
     begun = time.monotonic()
     try:
-        value = named_function(task.function)(task.argument)
+        value = resolve_name(task.function)(task.argument)
         json.dumps(value)
     except Exception as error:
         return TaskOutcome(None, RAISED, reason_of(error), time.monotonic() - begun)

@@ -11,9 +11,8 @@ import threading
 from typing import Any
 
 from utak.kb.language.operating_system import end_with_parent, read_lines_from_parent
+from utak.kb.reasoning.worker import READY_LINE
 from utak.simulator.sweep.executors.tasks import WorkerTask, carry_out
-
-READY = b"ready\n"  # the first line that a worker writes
 
 
 def main(idle_seconds: str = "0") -> None:
@@ -22,7 +21,7 @@ def main(idle_seconds: str = "0") -> None:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     lines = read_lines_from_parent()
-    answers.write(READY)
+    answers.write(READY_LINE)
     answers.flush()
     limit = _IdleLimit(float(idle_seconds))
     while True:

@@ -10,6 +10,7 @@ from tests.geometry.routes.test_routes import trips
 from utak.geometry.pathfinders.visibility_graph import visibility_path
 
 
+@pytest.mark.long
 @settings(max_examples=80, deadline=None)
 @given(trips(most=14))
 def test_the_length_is_that_of_the_whole_visibility_graph(trip):

@@ -14,7 +14,7 @@ def test_a_difference_after_a_kill_is_a_fault() -> None:
     none = killing.Killed(-9, True, "", [])
     assert list(killing._differences(killing.Reference(0, b"all", 3.0), reference, none)) == []
     found = list(killing._differences(killing.Reference(1, b"al", 3.0), reference, none._replace(orphans=[7])))
-    assert found == ["the exit code is 1, not 0", "the file has other bytes", "the processes [7] are left over"]
+    assert found == ["the exit code is 1, not 0", "the file has other contents", "the processes [7] are left over"]
 
 
 def test_processes_that_a_killed_command_leaves_over_are_found() -> None:

@@ -11,7 +11,6 @@ from benchmarks.harness.trial import Conditions, run_trial
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.plain import PLAIN_GOALS
 from benchmarks.worlds.scenes import write
-from tests.tables import few
 from utak.kb.mapping.occupancy import FREE
 from utak.simulator.episode.episode import EpisodeLog
 from utak.simulator.run.session import Session
@@ -37,13 +36,15 @@ def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) 
         read_scenario(write(world, tmp_path / f"{task}-{seed}"))
 
 
-@pytest.mark.parametrize("task", few([2, 5, 7], [2]))
+@pytest.mark.long
+@pytest.mark.parametrize("task", [2, 5, 7])
 def test_an_informed_robot_needs_no_more_commands(task: int, tmp_path: Path) -> None:
     trial = run_trial(task, 1, Conditions(knowing=True, kind="plain"), tmp_path)
     assert trial.achieved
     assert 0 < trial.needed <= trial.steps
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("heading_seed", [(1, 1), (1, 4), (3, 0)])
 def test_the_knowledge_of_the_informed_robot_is_true(heading_seed: tuple[int, int], tmp_path: Path) -> None:
     world = scenario(*heading_seed)

@@ -19,7 +19,7 @@ from benchmarks.worlds.scenes import PlacedThing, write
 from benchmarks.worlds.several.kinds import SEVERAL_KINDS, main, several_kinds, several_world
 from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon, stages_reached, to_corner, to_pose
 from tests.tables import few
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.simulator.scenario.expectation import Snapshot, unmet
 from utak.simulator.scenario.scenario import read_scenario
 

@@ -1,6 +1,7 @@
 """The kernels that settle squares against the same rules written down simply."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -63,6 +64,7 @@ def fields(draw):
     return where, weight, low, high
 
 
+@pytest.mark.long
 @settings(max_examples=150, deadline=None)
 @given(fields(), st.data())
 def test_fields_added_in_turn_settle_the_same_squares_as_all_at_once(given_, data) -> None:

@@ -82,6 +82,7 @@ def sofa(size: float, steps: int = 32) -> shapely.Polygon:
     return affinity.scale(outline, size, size, origin=(0, 0.5))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("size", "status"), [(0.97, "found"), (0.99, "found"), (1.01, "impossible")])
 def test_a_sofa_turns_the_corner_up_to_its_closed_form_size(size: float, status: str) -> None:
     field = box(-6, 0, 1, 1).union(box(0, -6, 1, 1))
@@ -184,6 +185,7 @@ def test_bad_numbers_are_refused(wrong: float) -> None:
         plan_motion(shapely.Point(0, 0), two_rooms(3.0), Pose(5, 6), Pose(19, 7))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("door", "missing"), [(1.7, 0.3), (1.95, 0.05)])
 def test_the_passage_and_its_missing_width_are_found(door: float, missing: float) -> None:
     plan = plan_motion(BRICK, two_rooms(door), Pose(5, 6, 90), Pose(19, 7, 30))
@@ -203,6 +205,7 @@ def test_where_two_passages_are_too_narrow_widening_one_alone_does_not_help() ->
     assert plan.missing == math.inf
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bottom", [28.0, 28.3, 28.57, 29.0])
 def test_a_slit_that_falls_between_the_pixels_of_a_large_floor_is_the_passage(bottom: float) -> None:
     rooms = [box(2, 2, 37, 90), box(39, 2, 76, 90), box(37, bottom, 39, bottom + 0.6)]
@@ -243,7 +246,7 @@ def test_a_very_small_body_is_decided_by_its_discs(size: float, times: float, st
     assert plan.status == status
     at = Pose(3, 3, 0)
     for motion in plan.motions:
-        assert Obstacles(slotted(times * size)).first_contact(ContactBody(at.place(body)), motion).fraction == 1.0
+        assert Obstacles(slotted(times * size)).first_contact(ContactBody(at.place(body)), motion) == 1.0
         at = motion.pose(at)
     assert status != "found" or (at.x, at.y, at.degrees) == pytest.approx((17, 3, 90), abs=1e-9)
 

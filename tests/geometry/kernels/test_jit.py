@@ -75,6 +75,7 @@ def test_integers_of_all_widths_share_one_compiled_copy() -> None:
     assert len(getattr(double.dispatcher() if hasattr(double, "dispatcher") else double, "overloads", [None])) == 1
 
 
+@pytest.mark.long
 def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
     code = (
         "import numpy as np; from utak.geometry.kernels import jit; jit.PROGRESS.notice_delay = 0.0; "
@@ -88,15 +89,36 @@ def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
     assert noticed == [os.environ.get("NUMBA_DISABLE_JIT", "0") == "0", False]
 
 
-def test_kernels_also_run_uncompiled() -> None:
-    code = (
-        "import numpy as np; from utak.geometry import Screen; free = np.ones((9, 12), bool); "
-        "free[4, 3:6] = free[4, 7:9] = free[0:2, 5] = False; screen = Screen(free); "
-        "print(len(screen.routes((0.5, 4.5), (11.5, 4.5), k=4)), screen.shortest((0.5, 4.5), (11.5, 4.5)).length > 11)"
-    )
-    plain = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=plain)
-    assert found.stdout.split() == ["4", "True"]
+UNCOMPILED = """
+import numpy as np, shapely
+from utak.geometry import Screen
+from utak.geometry.counts.gibbs import DRAWN, Counts, pictures
+from utak.geometry.manipulation.plan_carrying import Inside, plan_carrying
+free = np.ones((9, 12), bool)
+free[4, 3:6] = free[4, 7:9] = free[0:2, 5] = False
+screen, ends = Screen(free), ((0.5, 4.5), (11.5, 4.5))
+print([route.points for route in screen.routes(*ends, k=4)], screen.shortest(*ends).points)
+fields = np.arange(48, dtype=np.int32).reshape(3, 2, 4, 2).swapaxes(1, 2).reshape(12, 4)
+random = np.random.default_rng(1)
+count = random.integers(0, 5, 12).astype(np.int16)
+first = random.integers(0, 2, (4, 6, 8)).astype(np.int8)
+counts = Counts(fields, np.ones((12, 4), np.int16), count, count)
+print(pictures(np.full((6, 8), DRAWN, np.int8), counts, first, 9, 0.5).tolist())
+plan = plan_carrying(shapely.box(3, 2, 5, 3), np.ones((6, 16), bool), (1.5, 1.5), Inside(shapely.box(10, 0, 16, 6)))
+print(plan.status, plan.legs)
+"""
+
+
+@pytest.mark.long
+def test_kernels_give_the_same_uncompiled() -> None:
+    """Numpy keeps narrow types where numba widens them: what is computed in these would differ."""
+    plain, said = {**os.environ, "NUMBA_DISABLE_JIT": "1"}, []
+    for environment in (None, plain):
+        command = [sys.executable, "-c", UNCOMPILED]
+        found = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+        said.append(found.stdout)
+    assert said[0] == said[1]
+    assert "found" in said[0]
 
 
 MAKERS = {"empty", "zeros", "ones", "full", "arange", "array", "copy", "concatenate", "where", "unique", "append"}

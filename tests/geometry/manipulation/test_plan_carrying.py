@@ -13,19 +13,20 @@ from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds.makers import scenario
 from tests.geometry.replay import replay, walls_of
 from tests.tables import few
+from utak.geometry.manipulation.free_body import plan_body_alone
 from utak.geometry.manipulation.goals import Roomy, is_goal_met, moved
+from utak.geometry.manipulation.legs import verified
 from utak.geometry.manipulation.plan_carrying import (
     At,
     Between,
     CarryingPlan,
     InCorner,
     Inside,
-    OffLatticePlanners,
     Pose,
-    first_plan,
     plan_carrying,
 )
 from utak.geometry.manipulation.query import ManipulationQuery
+from utak.geometry.manipulation.single_grasp import plan_with_one_grasp
 from utak.geometry.manipulation.workspace import Workspace
 from utak.geometry.motion.se2 import Rotate, Translate
 
@@ -92,6 +93,7 @@ def test_a_goal_that_is_met_needs_no_legs() -> None:
     assert (plan.status, plan.legs, plan.commands) == ("found", (), 0)
 
 
+@pytest.mark.long
 def test_a_door_that_is_too_narrow_is_proved_impossible() -> None:
     plan = plan_carrying(box(5, 5, 8, 8), two_rooms(2), (3.5, 18.5), Inside([ROOM]))
     assert plan.status == "impossible"
@@ -171,6 +173,7 @@ def test_a_present_grasp_that_must_be_avoided_is_released() -> None:
     assert plan.legs == unheld.legs and plan.commands == unheld.commands + 1  # the release
 
 
+@pytest.mark.long
 def test_a_brick_leaves_a_blind_alley_only_when_held_from_behind() -> None:
     """The alley is as wide as the brick.
 
@@ -194,6 +197,7 @@ def test_the_present_grasp_of_a_body_at_an_angle_is_used() -> None:
     replay(plan, brick, free, utak)
 
 
+@pytest.mark.long
 @settings(max_examples=20, deadline=None, derandomize=True)
 @given(
     st.floats(5, 12),
@@ -229,6 +233,7 @@ def bricks_and_doors(draw: st.DrawFn) -> tuple[shapely.Polygon, np.ndarray, int]
     return affinity.rotate(brick, degrees, origin=(13, 12)), free, door - thin
 
 
+@pytest.mark.long
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(bricks_and_doors(), st.sampled_from([(3.5, 3.5), (22.5, 20.5), (2.2, 20.7)]), st.booleans())
 def test_a_brick_passes_just_the_doors_that_are_wide_enough(
@@ -307,8 +312,9 @@ def test_a_body_that_no_lattice_plan_aligns_is_aligned_with_one_grasp() -> None:
     free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
     goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
     query = ManipulationQuery(square, Workspace(free), (3.5, 3.5), goal, 0.0, True, (), free)
-    plan = first_plan(query, OffLatticePlanners(aligned=lambda _: None, by_freeing=lambda _: None))
-    assert plan.status == "found" and len(plan.legs) == 1
+    legs = plan_with_one_grasp(query, plan_body_alone(query).track)
+    assert legs is not None and len(legs) == 1
+    plan = CarryingPlan("found", tuple(legs), polygon=verified(query.workspace, square, legs))
     assert goal.admits(replay(plan, square, free, (3.5, 3.5)).bounds)
 
 
@@ -388,6 +394,7 @@ def test_arguments_that_make_no_sense_are_refused(wrong: dict[str, object]) -> N
         plan_carrying(**(asked | wrong))
 
 
+@pytest.mark.long
 @given(st.integers(0, 40), st.integers(0, 40))
 @settings(max_examples=20, deadline=None)
 def test_a_translated_query_has_a_translated_plan(dx: int, dy: int) -> None:

@@ -24,6 +24,7 @@ def random_walls(rng: np.random.Generator) -> shapely.Geometry:
     return shapely.union_all([affinity.translate(t, *rng.uniform(0, 16, 2)) for t in things])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_kind_of_a_cell_holds_at_every_pose_in_it(shape: shapely.Geometry) -> None:
     rng = np.random.default_rng(len(shape.wkt))

@@ -1,4 +1,4 @@
-"""Necks of the floor, the parts into which they cut it, and routes that avoid them."""
+"""Necks of the floor, and the parts into which they cut it."""
 
 import math
 
@@ -80,20 +80,6 @@ def test_rooms_are_the_parts_between_doors():
     assert sorted(rooms) == [1, 2, 3, 4]
 
 
-def test_routes_avoid_a_passage():
-    screen = Screen(floor_of(THREE_ROOMS))
-    found = doors(screen)
-    assert screen.routes((4.5, 10.5), (13.5, 10.5))
-    label = screen.parts(found)
-    for door in found:
-        ends = {label[int(y), int(x)] for x, y in door.gates}
-        cut = screen.parts([door])
-        for start, goal in (((4.5, 10.5), (13.5, 10.5)), ((13.5, 10.5), (22.5, 10.5)), ((4.5, 10.5), (13.5, 3.5))):
-            reachable = cut[int(start[1]), int(start[0])] == cut[int(goal[1]), int(goal[0])]
-            assert bool(screen.routes(start, goal, avoid=[door])) == reachable
-        assert len(ends) == 2
-
-
 @pytest.mark.long
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32 - 1))
@@ -139,17 +125,6 @@ def test_every_free_square_is_in_one_part_or_in_a_doorway(free):
         assert all(label[int(y), int(x)] for x, y in passage.gates)
 
 
-@settings(max_examples=100, deadline=None)
-@given(oracles.screens(most=14))
-def test_avoiding_a_passage_equals_cutting_its_neck(free):
-    screen = Screen(free)
-    for passage in doors(screen):
-        label = screen.parts([passage])
-        (x, y), (u, v) = passage.gates
-        routes = screen.routes((x, y), (u, v), avoid=[passage])
-        assert bool(routes) == (label[int(y), int(x)] == label[int(v), int(u)])
-
-
 @pytest.mark.parametrize("width", [1, 2, 3, 4, 5])
 @pytest.mark.parametrize("thickness", [1, 2, 3, 6])
 def test_a_door_of_any_width_and_thickness_is_one_door(width, thickness):
@@ -183,7 +158,6 @@ def test_a_door_flush_with_a_wall_is_a_door(width, mirrored, turn):
     assert label[mark == 1] != label[mark == 2]
     start, goal = ((x + 0.5, y + 0.5) for ((y, x),) in (np.argwhere(mark == n) for n in (1, 2)))
     assert screen.routes(start, goal)
-    assert not screen.routes(start, goal, avoid=[door])
 
 
 L_CORRIDOR = """

@@ -71,6 +71,7 @@ def full_turns(points: list[tuple[float, float]], about: tuple[float, float]) ->
     return sum(steps) / (2 * math.pi)
 
 
+@pytest.mark.long
 @settings(max_examples=300, deadline=None)
 @given(st.lists(point, min_size=2, max_size=12))
 def test_the_crossing_number_of_a_closed_line_is_its_winding_number(points: list[tuple[float, float]]) -> None:
@@ -82,6 +83,7 @@ def test_the_crossing_number_of_a_closed_line_is_its_winding_number(points: list
     assert crossing_number(np.array(closed), about) == round(full_turns(closed, about))
 
 
+@pytest.mark.long
 @settings(max_examples=300, deadline=None)
 @given(st.lists(point, min_size=1, max_size=6), st.lists(point, min_size=1, max_size=6), point)
 def test_crossing_numbers_add_up_and_change_sign_when_reversed(

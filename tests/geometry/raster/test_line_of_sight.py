@@ -25,6 +25,7 @@ def raster(rows: int, columns: int, seed: int) -> tuple[np.ndarray, tuple[int, i
     return free, here
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(st.integers(1, 14), st.integers(1, 14), st.integers(0, 2**32 - 1), st.integers(0, 15))
 def test_a_move_leads_where_all_that_it_sweeps_is_free(rows: int, columns: int, seed: int, longest: int) -> None:

@@ -28,6 +28,7 @@ def polygons_of(shape: shapely.Geometry) -> shapely.Geometry:
     return shapely.MultiPolygon([p for p in shapely.get_parts(shape) if p.geom_type == "Polygon" and p.area > 0])
 
 
+@pytest.mark.long
 @settings(max_examples=300, deadline=None)
 @given(st.lists(corner, min_size=3, max_size=9), st.booleans(), st.tuples(whole, whole))
 def test_squares_are_those_that_share_area(points: list, outside: bool, hole: tuple) -> None:

@@ -5,12 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.engine.exact import clearances
 from benchmarks.floors import CHECKS, disagreements
 from utak.geometry import Route, Screen
+from utak.geometry.homotopy.portals import word_of_line
 from utak.geometry.pathfinders.visibility_graph import visibility_path
 from utak.geometry.routes.lifting import lift_to_skeleton
-from utak.geometry.routes.tighten import word_of_crossings
 
 FLOOR_SEED = 20  # other floors than those of the campaign
 
@@ -20,6 +19,7 @@ def floor(*rows: str) -> np.ndarray:
     return np.array([[square != "#" for square in row] for row in rows[::-1]])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("check", CHECKS)
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(number=st.integers(0, 2**31))
@@ -41,44 +41,11 @@ def test_a_line_that_ends_at_a_pinch_must_come_from_the_side_of_its_square() -> 
     assert screen.tighten(Route(np.array([[1.5, 1.5], [1.0, 1.0]]), 0.0, 0.0, (), ())).signature == ()
 
 
-@pytest.mark.parametrize("radius", [0.51, 0.6, 0.7, 0.7071])
-def test_a_diagonal_corridor_admits_a_body_with_room_on_its_squares(radius: float) -> None:
-    i, j = np.indices((14, 14))
-    screen = Screen(abs(i - j) <= 2)
-    graph = screen.pathgraph_for(radius)
-    assert graph.number_of_nodes() - graph.number_of_edges() == 1
-    (route,) = screen.routes((1.5, 1.5), (12.5, 12.5), radius=radius)
-    assert route.clearance == pytest.approx(np.sqrt(0.5))
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**31), st.floats(0.0, 4.0))
-def test_a_body_may_be_on_the_squares_with_its_clearance(number: int, radius: float) -> None:
-    rng = np.random.default_rng(number)
-    free = rng.random(rng.integers(2, 14, 2)) >= 0.1
-    free[0, 0] = True
-    screen = Screen(free)
-    room = clearances(free) >= radius
-    squares = [(x, y) for y, x in np.argwhere(free).tolist()]
-    x, y = squares[int(rng.integers(len(squares)))]
-    assert bool(screen.routes((x + 0.5, y + 0.5), (x + 0.5, y + 0.5), radius=radius)) == room[y, x]
-
-
-@pytest.mark.parametrize(
-    ("point", "admitted"),
-    [((3.5, 1.4), True), ((3.5, 1.39), False), ((3.5, 1.0), False), ((1.4, 3.5), True), ((3.5, 5.61), False)],
-)
-def test_an_end_nearer_to_a_wall_than_the_radius_is_refused(point: tuple[float, float], admitted: bool) -> None:
-    screen = Screen(np.ones((7, 7), bool))
-    for ends in ((point, (3.5, 3.5)), ((3.5, 3.5), point), (point, point)):
-        assert bool(screen.routes(*ends, radius=1.4)) == admitted
-
-
 def test_a_route_from_a_place_to_itself_has_length_zero() -> None:
     screen = Screen(np.ones((7, 7), bool))
-    (route,) = screen.routes((3.2, 3.7), (3.2, 3.7), radius=1.0)
+    (route,) = screen.routes((3.2, 3.7), (3.2, 3.7))
     assert (route.length, route.points.tolist()) == (0.0, [[3.2, 3.7]])
-    (beside,) = screen.routes((3.2, 3.7), (3.8, 3.7), radius=1.0)
+    (beside,) = screen.routes((3.2, 3.7), (3.8, 3.7))
     assert beside.length == pytest.approx(0.6)
 
 
@@ -113,16 +80,14 @@ def test_no_clearance_is_missing_among_random_squares() -> None:
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**31), st.sampled_from([0.0, 0.6, 1.2]))
-def test_a_class_is_lifted_to_the_path_by_which_it_was_found(number: int, radius: float) -> None:
+@given(st.integers(0, 2**31))
+def test_a_class_is_lifted_to_the_path_by_which_it_was_found(number: int) -> None:
     rng = np.random.default_rng(number)
     free = rng.random(rng.integers(2, 14, 2)) >= rng.choice([0.05, 0.2, 0.4])
     free[0, 0] = True
     screen, squares = Screen(free), np.argwhere(free)
     start, goal = (tuple((squares[n][::-1] + 0.5).tolist()) for n in rng.integers(0, len(squares), 2))
-    for route in screen.routes(start, goal, k=1, radius=radius):
-        layer = screen._ask(radius).layer
-        found, _ = lift_to_skeleton(
-            layer, (*start, *goal), word_of_crossings(layer.runs, (*start, *goal), route.signature)
-        )
+    for route in screen.routes(start, goal, k=1):
+        layer = screen._queries.layer
+        found, _ = lift_to_skeleton(layer, (*start, *goal), word_of_line(layer.strips, route.points.tolist()))
         assert (0.5 * found.lowest**0.5, found.chains) == (route.clearance, route.chains)

@@ -109,31 +109,13 @@ def test_a_goal_in_another_component_cannot_be_reached(trip):
 
 
 @settings(max_examples=80, deadline=None)
-@given(trips(most=14), st.sampled_from([0.3, 0.5, 0.7, 1.0, 1.5, 2.0]))
-def test_a_body_keeps_its_distance(trip, radius):
-    free, start, goal = trip
-    start, goal = (tuple(np.floor(p) + 0.5) for p in (start, goal))
-    screen = Screen(free)
-    walls = shapely.box(0, 0, *free.shape[::-1]).boundary
-    blocked = shapely.union_all([walls, *(shapely.box(j, i, j + 1, i + 1) for i, j in np.argwhere(~free))])
-    for route in screen.routes(start, goal, k=3, radius=radius):
-        assert route.clearance >= radius
-        assert (
-            shapely.LineString(route.points if len(route.points) > 1 else [start, goal]).distance(blocked)
-            >= radius - 1e-9
-        )
-
-
-@settings(max_examples=80, deadline=None)
 @given(trips())
-def test_tightening_and_words_find_the_same_route_again(trip):
+def test_tightening_finds_the_same_route_again(trip):
     free, start, goal = trip
     screen = Screen(free)
     for route in screen.routes(start, goal, k=4):
         again = screen.tighten(route)
         assert (again.length, again.signature) == (pytest.approx(route.length, abs=1e-9), route.signature)
-        (named,) = screen.routes(start, goal, word=route.signature)
-        assert named.points.tolist() == route.points.tolist()
 
 
 def test_a_loose_route_is_tightened():
@@ -172,7 +154,7 @@ def test_errors_name_the_bad_end(start, goal, message):
 
 @pytest.mark.parametrize(
     "wish",
-    [{"k": 0}, {"k": 1.5}, {"k": None}, {"radius": -1}, {"radius": np.inf}, {"radius": np.nan}, {"radius": "wide"}],
+    [{"k": 0}, {"k": 1.5}, {"k": None}],
     ids=str,
 )
 def test_errors_name_the_bad_number(wish):

@@ -57,6 +57,7 @@ def test_a_disc_is_found_as_a_disc(radius: float) -> None:
     assert best.width / 2 == pytest.approx(radius, abs=0.4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("radius", "least"), [(1.5, 35), (2.0, 39), (2.5, 39)])
 def test_small_discs_off_the_lattice_are_not_taken_for_turned_squares_or_ells(radius: float, least: int) -> None:
     rng = np.random.default_rng(int(2 * radius))
@@ -76,6 +77,7 @@ def test_an_ell_with_a_slight_notch_is_a_disc(rows: tuple[str, ...], name: str) 
     assert seen_in_part[0].shape == "l_shape"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("turned", "least"), [(False, 40), (True, 34)])
 def test_a_tee_off_the_lattice_is_not_taken_for_an_ell(turned: bool, least: int) -> None:
     """Its stem covers more squares on one side of the middle, as that of a slightly turned L does."""
@@ -102,6 +104,7 @@ def random_shape_of(rng: np.random.Generator, name: str) -> shapely.Geometry:
     return affinity.scale(base, *rng.uniform(0.9, 1.1, 2))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc"])
 def test_turned_shapes_are_found_in_their_class(name: str) -> None:
     """All but a few of the small squares, which have the images of discs."""

@@ -32,10 +32,11 @@ def test_the_memory_of_a_dead_screen_is_used_again_and_leaves_no_trace():
     again = Screen(second)
     assert again._square is square and fresh._square is not square
     assert (again.clearance == fresh.clearance).all()
-    for mine, other in zip(again._skeleton_at(1), fresh._skeleton_at(1), strict=True):
+    for mine, other in zip(again._bones, fresh._bones, strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
 
 
+@pytest.mark.long
 def test_memory_for_small_clearances_is_not_used_for_large_ones():
     open_floor = np.ones((200, 210), bool)
     walled = open_floor.copy()

@@ -7,16 +7,15 @@ from hypothesis import strategies as st
 
 from tests.geometry import lookalikes, oracles
 from utak.geometry import Screen
-from utak.geometry.routes.layer import new_state
 from utak.geometry.skeleton import bit_parallel, lowest_cells
 from utak.geometry.skeleton.graph import WORDS_AHEAD, contract, is_node
 from utak.geometry.skeleton.skeleton import HALT
-from utak.geometry.skeleton.sweep import survey
+from utak.geometry.skeleton.sweep import new_state, survey
 
 
 def plain_walks(screen):
     """Return the nodes, and (first end, last end, lowest cell, steps) of all chains, from the links of single cells."""
-    state, heights = screen._skeleton_at(1)[0], screen._square.ravel()
+    state, heights = screen._bones[0], screen._square.ravel()
     width = state.shape[1]
     ways = {c: [d for d in range(4) if here >> d & 1] for c, here in enumerate(state.ravel().tolist()) if here}
     nodes = [c for c in ways if len(ways[c]) != 2 or state.ravel()[c] & HALT]
@@ -43,7 +42,7 @@ def plain_walk(cell, direction, ways, numbers, width):
 
 
 def assert_same(screen, bones=None):
-    bones = screen._skeleton_at(1)[2] if bones is None else bones
+    bones = screen._bones[2] if bones is None else bones
     nodes, chains = plain_walks(screen)
     assert bones.node.tolist() == nodes
     assert [*zip(*bones.port.T.tolist(), bones.neck.tolist(), bones.steps.tolist(), strict=True)] == chains
@@ -58,6 +57,7 @@ def test_nodes_and_chains_are_those_of_plain_walks_for_any_room_for_notes(free, 
     assert_same(screen, contract(square, state, words, min_notes=room))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", lookalikes.KINDS)
 def test_chains_that_lead_beyond_the_listed_nodes_are_right(kind):
     free = lookalikes.lookalike(kind, 600, 1, 30)

@@ -10,12 +10,9 @@ from tests.geometry import lookalikes, oracles
 from tests.geometry.measuring import measure
 from utak.geometry import Screen
 from utak.geometry.raster import distance_transform
-from utak.geometry.routes.layer import find_pathgraph, least_squared_clearance, new_state
 from utak.geometry.skeleton.graph import contract
-from utak.geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
-from utak.geometry.skeleton.sweep import survey
-
-RADII = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
+from utak.geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT, grow
+from utak.geometry.skeleton.sweep import new_state, survey
 
 
 def topology(graph):
@@ -54,6 +51,7 @@ def test_16_bits_are_used_only_where_they_hold_all_clearances(across, margins, r
         assert most > 56  # wide floor
 
 
+@pytest.mark.long
 @settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=16))
 def test_both_types_of_squared_clearances_give_the_same_graph(free):
@@ -61,22 +59,19 @@ def test_both_types_of_squared_clearances_give_the_same_graph(free):
     square = np.empty(screen._square.shape, np.int32)
     assert measure(free, square) and (square[1:-1] == screen._square[1:-1]).all()
     square[[0, -1]] = 0
-    for radius in RADII:
-        state, words = new_state(square.shape)
-        bones = find_pathgraph(square, least_squared_clearance(radius), state, words)
-        mine = screen._skeleton_at(least_squared_clearance(radius))
-        assert np.array_equal(state, mine[0])
-        assert all(np.array_equal(a, b) for a, b in zip(bones, mine[2], strict=True))
-    assert Screen(free).pathgraph_for(200.0).number_of_nodes() == 0
+    state, words = new_state(square.shape)
+    state[[0, -1]] = 0
+    flags, waiting = np.empty(square.shape[1], np.uint8), np.empty(square.shape[1], np.int32)
+    grow(square.reshape(-1), state.reshape(-1), words, square.shape[1], 1, len(square) - 2, flags, waiting, 0)
+    bones = contract(square, state, words)  # flags rings in the state
+    assert np.array_equal(state, screen._bones[0])
+    assert all(np.array_equal(a, b) for a, b in zip(bones, screen._bones[2], strict=True))
 
 
 @settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=16))
-def test_pathgraph_has_the_components_and_holes_of_free_space_for_every_radius(free):
-    screen = Screen(free)
-    for radius in RADII:
-        space = free & (screen.clearance >= radius)
-        assert topology(screen.pathgraph_for(radius)) == oracles.components_and_holes(space)
+def test_pathgraph_has_the_components_and_holes_of_free_space(free):
+    assert topology(Screen(free).pathgraph) == oracles.components_and_holes(free)
 
 
 @settings(max_examples=200, deadline=None)
@@ -100,7 +95,7 @@ def test_results_do_not_depend_on_the_size_of_bands(free, band):
     square, (state, words) = np.empty_like(whole._square), new_state(whole._square.shape)
     survey(free, square, state, words, band_cells=band)
     assert np.array_equal(square, whole._square)
-    for mine, other in zip((state, words, contract(square, state, words)), whole._skeleton_at(1), strict=True):
+    for mine, other in zip((state, words, contract(square, state, words)), whole._bones, strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
 
 
@@ -167,7 +162,4 @@ def test_bad_screens_are_rejected_with_a_reason(free, message):
 @pytest.mark.parametrize("kind", lookalikes.KINDS)
 def test_pathgraphs_of_lookalikes_of_the_benchmarks_are_right(kind):
     screen = Screen(lookalikes.lookalike(kind, 40, 3, 6))
-    for radius in (0.0, 1.0, 2.0, 3.0, 4.0, 5.0):
-        space = screen.free & (screen.clearance >= radius)
-        if space.any():
-            assert topology(screen.pathgraph_for(radius)) == oracles.components_and_holes(space)
+    assert topology(screen.pathgraph) == oracles.components_and_holes(screen.free)

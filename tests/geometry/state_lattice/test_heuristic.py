@@ -1,6 +1,7 @@
 """What can be reached on the state lattice is what has a cost to go."""
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -61,6 +62,7 @@ def test_an_end_can_be_reached_where_there_is_a_cost_to_go(
         assert can_reach_end(lattice, ends, place) == reached
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(st.sampled_from(SHAPES), floors())
 def test_a_push_is_free_where_all_the_squares_that_it_meets_are(shape: shapely.Polygon, free: np.ndarray) -> None:

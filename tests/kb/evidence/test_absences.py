@@ -10,6 +10,18 @@ from utak.simulator.explaining.questions import Questions, questions_of_episode
 
 THING = ["b" * 24, *["b......................b"] * 6, *["b.....ggg......U.......b"], *["b.....ggg..............b"] * 2]
 ROOM = [*THING, *["b......................b"] * 4, "b" * 24]
+FLOOR, STEM, BAR = ROOM[1], "b...........gg.........b", "b.........gggggg.......b"
+CROSS = [
+    ROOM[0],
+    *[FLOOR] * 2,
+    *[STEM] * 2,
+    *[BAR] * 2,
+    *[STEM] * 2,
+    *[FLOOR] * 3,
+    "b.....U................b",
+    FLOOR,
+    ROOM[0],
+]
 WALL, GAP = "b...................b..................bb", "b......................................bb"
 WOKEN = WALL[:36] + "U" + WALL[37:]  # the doors are seen from afar, and one of them wider than it is
 ROWS = [*[WALL] * 4, *[GAP] * 5, WOKEN, *[WALL] * 2, *[GAP] * 5, *[WALL] * 5]
@@ -44,6 +56,23 @@ def test_what_was_in_hand_is_said_to_have_been(carried: Questions) -> None:
     assert carried.why_not(fact, 0).because.endswith("nothing that was seen, felt or done says this of it")
 
 
+def test_another_class_of_shapes_would_be_believed_if_it_came_first(carried: Questions) -> None:
+    """Nothing else would have to be so: neither more squares settled nor another fit of a third class."""
+    absence = carried.why_not("shape(o1,t_shape,C)").data
+    changed = [*absence["missing"], *absence["in_way"]]
+    assert absence["missing"][0].startswith("fit(o1,t_shape,") and absence["missing"][0].endswith(",1)")
+    assert len(changed) == 3 and all(fact.startswith(("fit(o1,t_shape,", "fit(o1,square,")) for fact in changed)
+
+
+def test_where_a_thing_is_of_no_class_one_is_asked_for_as_surely_as_any_can_be(tmp_path: Path) -> None:
+    """A cross: all classes are refuted, so none has a confidence that another one could take over."""
+    questions = asked(tmp_path, CROSS, "object(x).\n", "at(utak, x).\n")
+    shapes = [fact for fact in questions.beliefs.record.steps[-1].facts if fact.startswith("shape(o1,")]
+    assert "shape(o1,polygon,99)" in shapes and "shape(o1,t_shape,0)" in shapes
+    absence = questions.why_not("shape(o1,t_shape,C)")
+    assert absence.data["atom"] == "shape(o1,t_shape,98)" and absence.data["found"]
+
+
 def test_a_step_of_the_plan_to_nowhere_was_not_offered(carried: Questions) -> None:
     plans = [(s.number, f) for s in carried.beliefs.record.steps for f in s.facts if f.startswith("plan(0,carry(")]
     step, fact = plans[0]
@@ -66,6 +95,7 @@ def test_a_felt_colour_rests_on_a_touch_of_that_thing(carried: Questions) -> Non
     )
 
 
+@pytest.mark.long
 def test_no_walk_names_objects_where_none_is_asked_for_and_the_floor_is_no_belief(tmp_path: Path) -> None:
     """A task about the robot alone; r1 is where it woke; a refutation names the doors that were shut besides."""
     goal = "in(utak, room(next)). not_through(utak, d).\n"

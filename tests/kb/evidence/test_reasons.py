@@ -16,7 +16,7 @@ from utak.kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
 from utak.kb.explanation.values import ProofNode
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.world.stated_plan import SETTLING_WORDS
+from utak.kb.language.vocabulary import SETTLING_STEPS
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
@@ -193,6 +193,7 @@ def test_an_episode_without_a_record_says_so(run: tuple[Questions, list[Any]]) -
         questions.why("kind(floor, floor, C)")
 
 
+@pytest.mark.long
 def test_what_is_missing_makes_a_fact_hold(run: tuple[Questions, list[Any]]) -> None:
     """A change that whynot names makes plain clingo derive the atom; without any member of it, it does not."""
     questions, lines = run
@@ -270,7 +271,7 @@ def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questio
             elif name == "crosses":
                 assert [atom_parts(claim)[0] for claim in below] == ["link", "threshold"]
             elif name == "plan":
-                settles = arguments[1].partition("(")[0] in SETTLING_WORDS
+                settles = arguments[1].partition("(")[0] in SETTLING_STEPS
                 assert settles != (" geometry " in why.because)
             elif name == "serves":
                 assert why.because == f"step {arguments[0]} of the plan is for goal {arguments[1]}"

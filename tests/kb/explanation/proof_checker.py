@@ -45,10 +45,22 @@ def best_decisions(encoding: Path, facts: str) -> list[Decision]:
     return found
 
 
+def nodes(root: ProofNode) -> Iterator[ProofNode]:
+    """Yield a node and all nodes below it, each once, a node before its children."""
+    seen: set[int] = set()
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        if id(node) not in seen:
+            seen.add(id(node))
+            yield node
+            waiting += reversed(node.children)
+
+
 def faults(decision: Decision, root: ProofNode) -> list[str]:
     """Return what is wrong with a proof; [] when it is right."""
     found = list(_circles(root, ()))
-    for node in root.walk():
+    for node in nodes(root):
         found += _faults_of_node(decision, node)
     return found
 

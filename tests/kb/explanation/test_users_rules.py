@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.kb.explanation.proof_checker import nodes
 from utak.kb.explanation.belief import explain_query_atom
 from utak.kb.explanation.programs import DecisionProgram, ExplanationError
 from utak.kb.explanation.proof import explain_decision
@@ -19,7 +20,7 @@ HEAVY = """\
 heavy(R) :- mass(R, N), N > 50.
 %! says heavy(R) "region {R} is heavy" else "nothing seen so far shows that region {R} is heavy"
 
-kind(R, object, 97) :- heavy(R), not own(R).
+kind(R, object, 97) :- heavy(R), not touched(R, b).
 """
 FACTS = ["region(a,nonzero,100)", "extent(a,3)", "mass(a,72)"]
 
@@ -40,10 +41,10 @@ def test_a_users_rule_stands_in_the_proof_with_its_sentence(tmp_path: Path) -> N
     assert proof.root.instance is not None
     assert (proof.root.instance.rule.file, proof.root.instance.rule.line) == (rules, 5)
     assert proof.root.sentence == proof.root.instance.rule.text  # a rule without a sentence stands for itself
-    heavy = next(node for node in proof.root.walk() if node.claim == "heavy(a)")
+    heavy = next(node for node in nodes(proof.root) if node.claim == "heavy(a)")
     assert heavy.sentence == "Region a is heavy: 7.2 squares of it are expected to be occupied."
     assert heavy.words == "region a is heavy"
-    assert {"mass(a,72)", "72 > 50", "not own(a)"} <= {node.claim for node in proof.root.walk()}
+    assert {"mass(a,72)", "72 > 50", "not touched(a,b)"} <= {node.claim for node in nodes(proof.root)}
 
 
 def test_what_a_users_rule_lacks_is_found(tmp_path: Path) -> None:
@@ -52,7 +53,7 @@ def test_what_a_users_rule_lacks_is_found(tmp_path: Path) -> None:
     found = explain_absence("interpretation", facts, answer(rules, facts), "kind(a,object,97)", [rules])
     assert (found.missing, found.in_way) == (("mass(a,51)",), ())
     assert found.proof is not None
-    assert any(node.sentence.startswith("Region a is heavy: 5.1 squares") for node in found.proof.root.walk())
+    assert any(node.sentence.startswith("Region a is heavy: 5.1 squares") for node in nodes(found.proof.root))
 
 
 def test_rules_that_do_not_reach_an_encoding_change_nothing(tmp_path: Path) -> None:
@@ -67,7 +68,7 @@ def test_recursive_rules_rest_on_nothing_but_facts(tmp_path: Path) -> None:
     facts = [f"region({one},nonzero,90)" for one in "abc"]
     facts += [f"surrounds({one},{other})" for one, other in ("ab", "bc", "ca")]
     proof = explain_decision("interpretation", facts, answer(rules, facts), "within(a,a)", [rules])
-    claims = [node.claim for node in proof.root.walk()]
+    claims = [node.claim for node in nodes(proof.root)]
     assert len(claims) == len(set(claims))
     assert {"surrounds(a,b)", "surrounds(b,c)", "surrounds(c,a)"} <= set(claims)
 
@@ -86,7 +87,7 @@ def test_a_recursive_aggregate_counts_what_is_founded(tmp_path: Path) -> None:
             visit(child, (*above, node.claim))
 
     visit(proof.root, ())
-    assert "mass(a,60)" in {node.claim for node in proof.root.walk()}
+    assert "mass(a,60)" in {node.claim for node in nodes(proof.root)}
 
 
 def test_pools_and_intervals_name_the_value_that_held(tmp_path: Path) -> None:
@@ -128,7 +129,7 @@ def test_a_query_predicate_is_explained_by_rule_instances_and_beliefs(tmp_path: 
     near, absent = root.children
     assert near.sentence == "o1 and o2 lie 4 squares apart."
     assert (absent.kind, absent.claim) == ("absent", "not held(o1)")
-    given = {node.claim for node in root.walk() if node.kind == "given"}
+    given = {node.claim for node in nodes(root) if node.kind == "given"}
     assert given == {"kind(o1,object,95)", "kind(o2,object,90)", "offset(o1,100,200)", "offset(o2,300,400)"}
 
 
@@ -136,7 +137,7 @@ def test_a_query_predicate_is_explained_by_rule_instances_and_beliefs(tmp_path: 
 def test_explained_query_atoms_are_those_that_queries_answer(tmp_path: Path, atom: str) -> None:
     rules = written(tmp_path, NEAR)
     root = explain_query_atom(BELIEF, atom, [rules]).root
-    given = sorted(node.claim for node in root.walk() if node.kind == "given")
+    given = sorted(node.claim for node in nodes(root) if node.kind == "given")
     with QueryEngine(rules=[rules]) as engine:
         assert engine.ask(BELIEF, atom).kind == "yes"
         assert set(given) <= {fact.removesuffix(".") for fact in BELIEF} and given
@@ -200,7 +201,7 @@ def test_a_very_high_proof_is_whole(tmp_path: Path) -> None:
     rules = written(tmp_path, "up(0) :- rim(_).\nup(N + 1) :- up(N), N < 1500.\n")
     facts = [*FACTS, "rim(a)"]
     proof = explain_decision("interpretation", facts, answer(rules, facts), "up(1500)", [rules])
-    assert sum(1 for _ in proof.root.walk()) > 1500
+    assert sum(1 for _ in nodes(proof.root)) > 1500
 
 
 def test_names_of_helping_rules_are_refused(tmp_path: Path) -> None:

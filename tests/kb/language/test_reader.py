@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.tables import few
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.kb.language.reader import facts_from_text, read_facts
 from utak.kb.language.terms import Number, Symbol, Text
@@ -70,7 +69,7 @@ REFUSED = {
     "-p(x).": "1:1-1: a negated fact",
     "not p(x).": "1:5-5: a negated fact",
     "{p}.": "1:1-1: a choice",
-    "p(x), q(x).": "1:5-5: a fact ends in a full stop",
+    "p(x), q(x).": "1:5-5: one fact at a time, and no , after it",
     "p(x)": "1:4-4: a full stop was expected",
     "p(x, ).": "1:6-6: an argument is missing",
     "p().": "1:3-3: an argument is missing",
@@ -125,9 +124,8 @@ def test_at_most_twenty_problems_are_shown() -> None:
     assert str(caught.value).endswith("... and more")
 
 
-@pytest.mark.parametrize(
-    "text", few(["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"], ["p(x,"])
-)
+@pytest.mark.long
+@pytest.mark.parametrize("text", ["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"])
 def test_the_time_to_read_grows_linearly(text: str) -> None:
     start = time.process_time()
     with pytest.raises(BadInputError) as caught:

@@ -89,6 +89,7 @@ def kidnapped(seed: int, notices: bool = True) -> Stroll:
     return stroll
 
 
+@pytest.mark.long
 def test_a_kidnapped_robot_recognises_the_failure_and_maps_the_room_again() -> None:
     for seed in range(3):
         stroll = kidnapped(seed)
@@ -97,6 +98,7 @@ def test_a_kidnapped_robot_recognises_the_failure_and_maps_the_room_again() -> N
         assert len(stroll.knowledge.memory.track) == len(stroll.hows)
 
 
+@pytest.mark.long
 def test_an_observation_that_agrees_with_nothing_contradicts_the_model() -> None:
     knowledge = walked(ROOM, [(2, 0), (0, 3)]).knowledge
     x, y = utak_in(ROOM)
@@ -107,6 +109,7 @@ def test_an_observation_that_agrees_with_nothing_contradicts_the_model() -> None
     assert model.contradicted
 
 
+@pytest.mark.long
 def test_without_a_new_beginning_the_map_stays_wrong() -> None:
     for seed in range(3):
         stroll = kidnapped(seed, notices=False)
@@ -137,6 +140,7 @@ def test_moved_objects_raise_the_residual_of_a_failure() -> None:
     assert TrackerState(residuals=(1, MAX_RESIDUAL_AFTER_MOVING), held_objects={"o1": moved}).lost
 
 
+@pytest.mark.long
 def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
     knowledge = lost_in(ROOM)
     x, y = utak_in(ROOM)
@@ -156,6 +160,7 @@ def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
     assert not knowledge.memory.held_objects
 
 
+@pytest.mark.long
 def test_in_another_frame_an_object_that_never_moved_is_forgotten() -> None:
     thing = shapely.box(-6, 5, -3, 8)  # nothing is there
     for moved, held in ((False, False), (True, False), (False, True)):
@@ -174,6 +179,7 @@ def test_in_another_frame_an_object_that_never_moved_is_forgotten() -> None:
         assert (tracker.state.occupancy.state == before).all() == (not moved and not held)
 
 
+@pytest.mark.long
 def test_a_new_beginning_keeps_the_track() -> None:
     knowledge = lost_in(ROOM)
     x, y = utak_in(ROOM)

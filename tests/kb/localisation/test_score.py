@@ -12,7 +12,7 @@ from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCo
 from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from utak.kb.localisation.propose.earlier_motion import ReestimatedMotion
-from utak.kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propose_earlier_motions
+from utak.kb.localisation.score import SearchBudget, propose_earlier_motions
 from utak.kb.localisation.state import TrackerState
 from utak.kb.perception.frame import CENTRE, Frame
 
@@ -51,8 +51,7 @@ def test_only_doubtful_motions_are_reestimated_where_something_simple_explains_a
         return [told] * bool(motions)
 
     state, budget = TrackerState(observations=observations, motions=moved), SearchBudget(0)
-    proposers = EARLIER_MOTION_PROPOSERS._replace(in_frame=reestimate)
-    found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, proposers)
+    found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, reestimate)
     assert calls == ([] if asked is None else [asked])
     assert len(found) == bool(asked)
     for one in found:

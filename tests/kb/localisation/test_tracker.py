@@ -11,7 +11,6 @@ from shapely.affinity import rotate, translate
 from tests.kb.drawings import LARGE_ROOM, walked
 from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
-from tests.tables import few
 from utak.kb.body import Move, Push, Turn
 from utak.kb.localisation.field_account import CellStatus
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
@@ -59,6 +58,7 @@ def test_a_blocked_walk_is_recognised() -> None:
     assert (2, -4) in tracker.state.blocked_squares
 
 
+@pytest.mark.long
 def test_a_slip_is_recognised_after_earlier_slips() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3), (1, 0), (0, 1), (-1, 0), (0, -1)])
     x, y = utak_in(ROOM)
@@ -69,6 +69,7 @@ def test_a_slip_is_recognised_after_earlier_slips() -> None:
     assert tracker.state.place == pytest.approx((-0.5, 4.5))
 
 
+@pytest.mark.long
 def test_another_orientation_of_the_frame_is_recognised() -> None:
     tracker, occupied, (x, y) = Tracker(), world_of(ROOM), utak_in(ROOM)
     hows = [tracker.wake(impression(occupied, (x, y), heading=30)).explanation.how]
@@ -116,7 +117,8 @@ def test_later_observations_tell_where_a_walk_was_blocked() -> None:
     assert all(then < 0.1 and later < 0.1 for at_once, then, later in walks if at_once < 0.1)  # right stays right
 
 
-@pytest.mark.parametrize("seed", few([1047, 1096, 1098, 1147, 1161], 1))
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [1047, 1096, 1098, 1147, 1161])
 def test_a_wrong_end_of_a_walk_is_corrected_by_later_observations(seed: int) -> None:
     """A contact was overlooked, or placed too far on; without re-estimation of motions the place stays wrong."""
     remembered, forgotten = errors_after_a_contact(seed, True), errors_after_a_contact(seed, False)
@@ -213,6 +215,7 @@ def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied =
     return tracker
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", [(20.85, 20.05), (20.2, 20.6), (20.4, 20.1)])
 def test_a_turned_object_tells_the_origin_of_the_frame(place: tuple[float, float]) -> None:
     thing = translate(ELL, 21, 18)
@@ -293,6 +296,7 @@ def test_an_unknown_contact_makes_the_squares_ahead_suspected() -> None:
     assert min(tracker.state.suspected_squares) not in tracker.state.closed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("slips", "state", "about", "closed"),
     [

@@ -21,12 +21,15 @@ LOOKS = [(20, 20), (22, 21), (23, 23)]
 NEAR_THE_WALL = (34, 20, 6, 3)  # east, north, wide, high
 
 
-def views() -> list[MapView]:
-    rooms = (LARGE_ROOM, drawing(31, 30, 5, 5), drawing(*NEAR_THE_WALL), drawing(10, 33, 6, 2))
-    return [looked(rows, LOOKS[:count]).view() for rows in rooms for count in (1, 3)]
+ROOMS = (LARGE_ROOM, drawing(31, 30, 5, 5), drawing(*NEAR_THE_WALL), drawing(10, 33, 6, 2))
 
 
-@pytest.mark.parametrize("view", views())
+@pytest.fixture(scope="module", params=[(rows, count) for rows in ROOMS for count in (1, 3)])
+def view(request: pytest.FixtureRequest) -> MapView:
+    rows, count = request.param
+    return looked(rows, LOOKS[:count]).view()
+
+
 def test_a_square_and_a_field_belong_to_one_scene(view: MapView) -> None:
     ground = given_squares(view)
     owner = np.zeros(ground.shape, int)
@@ -41,7 +44,6 @@ def test_a_square_and_a_field_belong_to_one_scene(view: MapView) -> None:
         assert len(set(owner.ravel()[where[weight > 0]].tolist()) - {0}) <= 1
 
 
-@pytest.mark.parametrize("view", views())
 def test_completions_agree_with_settled_squares_and_with_nearly_all_counts(view: MapView) -> None:
     ground = given_squares(view)
     images = draw_completions(view, ground, NO_COMPLETIONS).images
@@ -91,7 +93,6 @@ def test_samples_stay_while_no_impression_says_anything_new_of_them() -> None:
     assert by_square(then) != by_square(alone)
 
 
-@pytest.mark.parametrize("view", views())
 def test_the_part_of_completions_over_a_scene_is_what_they_show_there(view: MapView) -> None:
     whole = draw_completions(view, given_squares(view), NO_COMPLETIONS)
     for scene in scenes(view, whole.ground):

@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.kb.eyes import Occupied, random_room, retina, world_of
+from utak.geometry.counts.retina import OWN_FIELD
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Frame, Samples
-from utak.kb.perception.retina import OWN_FIELD, count_ranges
+from utak.kb.perception.retina import count_ranges
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -89,6 +90,7 @@ def consistent(case) -> list[tuple[int, ...]]:
     return answer
 
 
+@pytest.mark.long
 @settings(max_examples=300, deadline=None)
 @given(tiny_cases())
 def test_settled_squares_follow_from_the_counts(case) -> None:
@@ -101,6 +103,7 @@ def test_settled_squares_follow_from_the_counts(case) -> None:
         assert {world[x] for world in worlds} == {state}
 
 
+@pytest.mark.long
 def test_single_fields_and_full_counts_settle() -> None:
     occupancy = OccupancyMap()
     occupancy.observe(
@@ -109,6 +112,7 @@ def test_single_fields_and_full_counts_settle() -> None:
     assert settled(occupancy) == {(0, 0): OCCUPIED, (1, 0): FREE, (2, 0): FREE, (3, 0): OCCUPIED, (4, 0): OCCUPIED}
 
 
+@pytest.mark.long
 def test_the_difference_of_two_fields_settles() -> None:
     occupancy = OccupancyMap()
     occupancy.observe(tiny([[0, 1], [1, 2]], [[1, 1]] * 2, [0, 0]), np.array([(1, 1), (1, 1)]), 0, 0, 0)
@@ -117,6 +121,7 @@ def test_the_difference_of_two_fields_settles() -> None:
     assert settled(occupancy) == {(0, 0): OCCUPIED, (1, 0): FREE, (2, 0): OCCUPIED}
 
 
+@pytest.mark.long
 def test_samples_between_two_squares_settle_nothing() -> None:
     occupancy = OccupancyMap()
     occupancy.observe(tiny([[0, 1]], [[1, 1]], [1]), np.array([(2, 2)]), 0, 0, 0)

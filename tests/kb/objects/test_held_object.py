@@ -12,13 +12,14 @@ from shapely.affinity import rotate, translate
 
 from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
+from utak.geometry.counts.retina import FIELDS, OWN_FIELD
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, predicted_outcome
 from utak.kb.mapping.occupancy import OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, outline_tolerance, snap_to_grid, subtract_held_objects
 from utak.kb.perception.frame import Frame
-from utak.kb.perception.retina import FIELDS, OWN_FIELD, count_ranges
+from utak.kb.perception.retina import count_ranges
 
 BRICK = shapely.box(0, 0, 4, 2)
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
@@ -118,6 +119,7 @@ def test_a_turn_keeps_the_robot_in_place_and_its_centre_is_uncertain() -> None:
     assert min(outcome.polygon.symmetric_difference(true).area for outcome in outcomes) < 0.2
 
 
+@pytest.mark.long
 @example(991676, 10, 55.031408332442226, True)
 @example(322096, 45, 109.93298110907814, True)
 @given(st.integers(0, 10_000), st.sampled_from([0, 10, 30, 45, 326]), st.floats(0, 360), st.booleans())

@@ -1,5 +1,6 @@
 """Whether a rectangle is a square or a brick, as far as pushes have shown its size."""
 
+import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -22,6 +23,7 @@ def image(thing: shapely.Polygon) -> shapely.Polygon:
     )
 
 
+@pytest.mark.long
 @given(longs, longs, parts, parts, st.lists(st.tuples(parts, parts), max_size=8))
 @settings(max_examples=80, deadline=None)
 def test_the_true_class_of_a_rectangle_is_always_possible(

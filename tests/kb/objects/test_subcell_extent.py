@@ -53,6 +53,7 @@ def lies_within(insets: SubcellExtent, seen: Any, thing: Any) -> bool:
     return all(low - 1e-9 <= at <= high + 1e-9 for low, at, high in zip(insets.least, far, insets.most, strict=True))
 
 
+@pytest.mark.long
 @given(st.sampled_from(sorted(SHAPES)), parts, parts, st.lists(st.tuples(parts, parts), max_size=6))
 @settings(max_examples=80, deadline=None)
 def test_the_true_insets_stay_possible_after_any_pushes(
@@ -80,6 +81,7 @@ def test_the_true_insets_stay_possible_after_any_pushes(
         assert load.sure.squares() <= patch_of_polygon(thing).squares() <= load.possible.squares()
 
 
+@pytest.mark.long
 @given(st.sampled_from(sorted(SHAPES)), parts, parts, st.integers(0, 3))
 @settings(max_examples=60, deadline=None)
 def test_pushes_by_parts_of_a_square_show_the_size_of_an_object(name: str, x: float, y: float, quarters: int) -> None:

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.kb.eyes import sampled
+from utak.geometry.counts.retina import FIELDS, OWN_FIELD
 from utak.kb.body import DIRECTIONS
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, SAMPLING_TIE_TOLERANCE, Frame, turned
-from utak.kb.perception.retina import FIELDS, OWN_FIELD
 from utak.simulator.world.senses import Senses
 
 length = st.floats(-100, 100).map(lambda v: round(v, 6))
@@ -86,6 +86,7 @@ def test_without_rotation_every_square_is_sampled_once() -> None:
     assert samples.weight.sum() == 32 * 32 - 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle", range(-44, 46))
 def test_a_direction_names_the_square_that_the_senses_mean_at_any_orientation(angle: int) -> None:
     frame = Frame(angle)

@@ -1,13 +1,10 @@
 """Regions, and which surrounds which, on drawings and random rasters, against brute-force flooding."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.kb.eyes import retina, world_of
-from utak.kb.perception.regions import Percept, impression_regions, label_of, map_regions
-from utak.kb.perception.retina import FIELDS, OWN_FIELD, edge_fields, neighbours
+from utak.kb.perception.regions import Percept, label_of, map_regions
 
 STEPS = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
@@ -130,37 +127,3 @@ def test_diagonal_squares_are_not_connected() -> None:
     occupied, seen = drawn(["g.", ".g"])
     percept, _ = map_regions(occupied, seen, seen)
     assert len(percept.regions) == 4
-
-
-SQUARE = (
-    ["." * 33] * 10
-    + ["..........ggg...................."] * 3
-    + ["." * 33] * 3
-    + ["." * 16 + "U" + "." * 16]
-    + ["." * 33] * 16
-)
-
-
-@pytest.mark.parametrize("square", [(16, 16), (13, 17), (15, 22)])
-def test_impression_regions_are_the_connected_cells(square: tuple[int, int]) -> None:
-    levels = retina(world_of(SQUARE), square)
-    percept, cells = impression_regions(levels)
-    want = {frozenset({OWN_FIELD})}
-    for kind in (False, True):
-        members = {i for i in range(len(FIELDS)) if i != OWN_FIELD and (levels[i] > 0) == kind}
-        want |= set(flooded(members, lambda i: neighbours()[i]))
-    assert set(cells.values()) == want
-    assert {region.name for region in percept.regions} == set(cells)
-    for region in percept.regions:
-        if region.name != "own":
-            assert region.rim == bool(cells[region.name] & edge_fields())
-            assert 0 <= region.certain <= 100
-
-
-def test_floor_surrounds_a_square_in_one_impression() -> None:
-    percept, cells = impression_regions(retina(world_of(SQUARE), (13, 17)))
-    thing = next(r for r in percept.regions if r.occupied and not r.own and not r.rim)
-    floor = next(r for r in percept.regions if not r.occupied and r.rim)
-    assert (floor.name, thing.name) in percept.surrounds
-    assert (floor.name, "own") in percept.surrounds
-    assert len(cells[thing.name]) == 5

@@ -6,17 +6,8 @@ from math import floor
 import numpy as np
 import pytest
 
-from utak.kb.perception.retina import (
-    FIELDS,
-    OWN_FIELD,
-    RETINA_REACH,
-    Field,
-    count_ranges,
-    edge_fields,
-    field_plan,
-    level_counts,
-    neighbours,
-)
+from utak.geometry.counts.retina import FIELDS, OWN_FIELD, RETINA_REACH, field_plan
+from utak.kb.perception.retina import count_ranges, level_counts
 
 LEVELS = {1: [0, 7], 2: [0, 2, 4, 5, 7], 4: range(8)}  # by side of a field: the levels that it can show
 
@@ -67,27 +58,6 @@ def test_the_plan_names_the_field_of_each_offset() -> None:
         rows, columns = np.nonzero(numbers == number)
         assert len(rows) == side * side
         assert (rows.min() - RETINA_REACH, columns.min() - RETINA_REACH) == (north, east)
-
-
-def test_neighbours_share_an_edge() -> None:
-    def touch(a: Field, b: Field) -> bool:
-        wide = min(a.east + a.side, b.east + b.side) - max(a.east, b.east)
-        high = min(a.north + a.side, b.north + b.side) - max(a.north, b.north)
-        return (wide == 0 and high > 0) or (high == 0 and wide > 0)
-
-    found = neighbours()
-    for i, a in enumerate(FIELDS):
-        assert found[i] == {j for j, b in enumerate(FIELDS) if i != j and touch(a, b)}
-
-
-def test_the_edge_fields_reach_the_edge_of_the_retina() -> None:
-    edge = {
-        i
-        for i, f in enumerate(FIELDS)
-        if -RETINA_REACH in (f.east, f.north) or RETINA_REACH in (f.east + f.side, f.north + f.side)
-    }
-    assert edge_fields() == edge
-    assert all(FIELDS[i].side == 4 for i in edge)
 
 
 def test_the_own_field_says_nothing() -> None:

@@ -131,6 +131,8 @@ WRONG = {
     "p(X) :- X = #sum{C,R : kind(R,verge,C)}.": "a sum is not given to a variable in rules",
     "-p(1).": "classical negation is not known here",
     "p :- &diff{a} > 3.": "theory atoms are not known here",
+    ":- do(resume(nonsense)).": "unknown begun activity nonsense",
+    ":- do(resume(feel(nonsense))).": "unknown begun activity feel(nonsense)",
     ":- choose(_).": "choose/1 belongs to aims.lp and routes.lp, which rules of users do not reach",
     ":- chosen(E), explanation(E, slipped, _, _).": "chosen/1 belongs to accommodation.lp",
     "p(X) :- kind(X,verge,C), fit(X,S,M,R).": "this rule counts nowhere: no encoding knows all of fit/4, kind/3",
@@ -215,6 +217,7 @@ def test_an_error_of_a_rule_during_a_query_has_its_place(tmp_path: Path) -> None
     assert f"{paths[0]}:2:1-1: error: a number beyond 32 bits" in str(caught.value)
 
 
+@pytest.mark.long
 def test_a_runaway_rule_is_given_up(tmp_path: Path) -> None:
     limits = RuleLimits(seconds=0.5)
     endless = written(tmp_path, "n(0). n(X+1) :- n(X), X < 2000000000. kind(a, verge, 8) :- n(1).")

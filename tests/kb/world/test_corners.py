@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.kb.drawings import known_model
 from tests.kb.eyes import random_room
-from utak.kb.language.vocabulary import CORNER_NAMES
+from utak.kb.language.goal_words import CORNER_NAMES
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN
 from utak.kb.mapping.patch import patch_of
 from utak.kb.world.corners import corners, known_floor

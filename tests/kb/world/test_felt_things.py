@@ -87,6 +87,7 @@ def test_of_a_thing_in_a_doorway_only_what_was_felt_is_taken_for_it() -> None:
     assert sorted(map(tuple, np.argwhere(found).tolist())) == [(3, 6), (3, 7)]
 
 
+@pytest.mark.long
 def test_what_did_not_move_is_given_up_as_one_thing_when_two_colours_are_felt_on_it() -> None:
     occupied, (x, y), colour = world_of(FLUSH), utak_in(FLUSH), colours_of(FLUSH)
     knowledge = Knowledge()

@@ -29,6 +29,19 @@ def test_a_door_keeps_its_name_and_gives_it_to_no_other() -> None:
     assert called(second, first) == {first: "d2", second: "d1"}
 
 
+def test_a_door_that_may_be_one_has_the_name_that_it_bears_later() -> None:
+    """What may be a door gets no name of another door, and is called the same once it is one."""
+    model = known_situation(WALKER).model
+    both = rooms_of(model)
+    first, second = both.doors
+    names = PlaceNames()
+    (sure,) = names.named(replace(both, doors=(second,)), model).doors
+    (possible,) = names.doors_named((first,), model, (sure,))
+    (other,) = names.doors_named((second,), model, (sure,))
+    assert (sure.name, possible.name, other.name) == ("d1", "d2", "d3")
+    assert [door.name for door in names.named(both, model).doors] == ["d2", "d1"]
+
+
 def test_rooms_keep_their_numbers_when_they_are_parted_and_joined() -> None:
     """A room that was joined with another one for a while has its own number again."""
     model = known_situation(WALKER).model

@@ -5,8 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.language.vocabulary import PLAN_PREDICATES, ROBOT
-from utak.kb.world.stated_plan import SETTLING_WORDS, StatedPlan, stated_plan
+from utak.kb.language.goal_words import ROBOT
+from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_STEPS
+from utak.kb.world.stated_plan import StatedPlan, stated_plan
 from utak.planner.oracles.carry import Certainty
 from utak.planner.oracles.problem import HERE, PlacedGoal
 from utak.planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
@@ -26,7 +27,7 @@ def errands(draw: st.DrawFn) -> Errand:
     """Return a step of a plan, as the search makes it."""
     if draw(st.integers(0, 3)) == 0:
         return Errand(
-            draw(st.sampled_from(sorted(SETTLING_WORDS))), draw(st.sampled_from(["g1", "g3", "all", "robot"]))
+            draw(st.sampled_from(sorted(SETTLING_STEPS))), draw(st.sampled_from(["g1", "g3", "all", "robot"]))
         )
     certainty = draw(st.sampled_from([None, Certainty.SURE, Certainty.HOPED]))
     commands = 0 if certainty is None else draw(st.integers(1, 99))

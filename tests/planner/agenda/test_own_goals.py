@@ -2,13 +2,15 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.planner.situations import BESIDE_A_THING, all_felt, known_situation, situation_of, turn_of
 from utak.kb.language.reader import facts_from_text
 from utak.planner.agenda.own_goals import OwnGoals
+from utak.planner.deciding.verification import robot_square
 from utak.planner.decision import TaskVerdict
-from utak.planner.goals.robot_goals import destination
+from utak.planner.goals.robot_goals import Destination, destination
 from utak.planner.stages import Stage
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.setting import WhereGoalsHold
@@ -30,3 +32,14 @@ def test_a_robot_that_was_lost_does_not_say_that_it_is_back(goal: str, told: boo
         found = OwnGoals(destination).go(turn, Intention(WhereGoalsHold(None, None, destination)))  # type: ignore[arg-type]
         assert found.verdict == verdict, found.why
         assert ("the robot was lost since it woke" in found.why) == (verdict == TaskVerdict.LIMIT)
+
+
+@pytest.mark.parametrize("goal", ["rest(utak)", "among(utak, start, x)"])
+def test_each_thing_that_a_goal_names_is_made_sure_of(goal: str) -> None:
+    """A goal word has one argument or several: what any of them means is looked at before the goal is said to hold."""
+    model = all_felt(known_situation(BESIDE_A_THING).model)
+    model = replace(model, objects=tuple(replace(node, open=1, vague=1) for node in model.objects))
+    turn = turn_of(Stage(facts_from_text(f"{goal}.")), situation_of(model, {"x": "g"}))
+    goals = OwnGoals(lambda _goal, situation: Destination(np.flatnonzero(robot_square(situation.model))))
+    found = goals.go(turn, Intention(WhereGoalsHold(None, None, destination)))  # type: ignore[arg-type]
+    assert (found.verdict == TaskVerdict.DONE) == ("x" not in goal), found.why

@@ -145,8 +145,9 @@ def test_goals_are_asked_about_anew_when_what_is_held_was_led_out_before_walls_a
     situation, clearer = known(ELSEWHERE), ObstacleClearer()
     held = situation_of(replace(situation.model, held=situation.model.objects[0].name))
     clearer.feel(UTAK.goals, turn_of(UTAK, situation))
-    assert clearer.begun(situation) == ("feel",)
-    assert clearer.begun(held) == clearer.begun(situation) == ()
+    assert clearer.is_feeling(situation)
+    assert not clearer.is_feeling(held)
+    assert not clearer.is_feeling(situation)
 
 
 def test_an_obstacle_that_may_be_wall_is_felt_first() -> None:

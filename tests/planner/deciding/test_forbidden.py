@@ -158,6 +158,7 @@ def test_of_two_doors_the_narrower_one_is_left_alone_by_a_thing() -> None:
     assert found.forbidden("o1") == (narrow,) and narrow.width < first.width
 
 
+@pytest.mark.long
 def test_what_must_not_go_through_one_of_two_doors_is_carried_through_the_other() -> None:
     """The thing stays where it is until the doors are known; the narrower one is kept shut to it."""
     world = (

@@ -10,7 +10,6 @@ import shapely
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
 from tests.planner.test_constraints import ROWS, box, situation_for
-from tests.tables import few
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
 from utak.kb.task.task import Task
@@ -53,6 +52,7 @@ def test_the_true_track_of_the_robot_never_touches_its_region() -> None:
     assert line.length > 20 and not line.intersects(shapely.box(8, 8, 18, 16))
 
 
+@pytest.mark.long
 def test_a_thing_never_touches_its_region_in_truth() -> None:
     _, covered = true_tracks(EXAMPLES / "push_square_avoiding", "g1")
     assert not covered.is_empty and not covered.intersects(shapely.box(15.5, 6.5, 19.5, 20.5))
@@ -61,24 +61,21 @@ def test_a_thing_never_touches_its_region_in_truth() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("start", "goal", "named", "verdicts"),
-    few(
-        [
-            (
-                "",
-                f'in(utak, room(next)). avoid(utak, "{box(3, -4, 8, 4)}").',
-                "leaves no way",
-                ("possible_if", "limit"),
-            ),
-            ("", f'in(utak, room(next)). avoid(utak, "{box(5.2, -9, 5.8, 9)}").', "leaves no way", ("limit",)),
-            (
-                "",
-                f'at(utak, start). avoid(utak, "{box(-1, -1, 1, 1)}").',
-                "the robot wakes in that region",
-                ("impossible",),
-            ),
-        ],
-        1,
-    ),
+    [
+        (
+            "",
+            f'in(utak, room(next)). avoid(utak, "{box(3, -4, 8, 4)}").',
+            "leaves no way",
+            ("possible_if", "limit"),
+        ),
+        ("", f'in(utak, room(next)). avoid(utak, "{box(5.2, -9, 5.8, 9)}").', "leaves no way", ("limit",)),
+        (
+            "",
+            f'at(utak, start). avoid(utak, "{box(-1, -1, 1, 1)}").',
+            "the robot wakes in that region",
+            ("impossible",),
+        ),
+    ],
 )
 def test_a_region_that_leaves_no_way_is_named(
     start: str, goal: str, named: str, verdicts: tuple[str, ...], tmp_path: Path

@@ -7,13 +7,13 @@ from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET,
 from utak.geometry.manipulation.goals import At
 from utak.geometry.motion.se2 import Pose
 from utak.kb.body import Move
+from utak.kb.task.task import task_from_texts
 from utak.kb.tracing.decisions import SolverCall, record_decisions
 from utak.kb.world.model import WorldModel
 from utak.planner.advice import Act, Go
 from utak.planner.agenda.decider import Decider
 from utak.planner.carrying.plan_executor import PlanExecutor
 from utak.planner.decision import Decision, TaskVerdict
-from utak.simulator.explaining.fixing.recorded import task_from_texts
 
 
 def decided(decider: Decider, model: WorldModel) -> tuple[Decision, list[SolverCall]]:

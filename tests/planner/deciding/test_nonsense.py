@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from tests.kb.eyes import impression, random_room, utak_in, world_of
 from tests.planner.test_cycle import NORTHEAST, SQUARE
+from utak.geometry.counts.retina import FIELDS, OWN_FIELD
 from utak.kb.body import Command, Impression
-from utak.kb.perception.retina import FIELDS, OWN_FIELD
 from utak.kb.task.task import Task
 from utak.planner.cycle import Options, Robot
 from utak.planner.decision import TaskVerdict

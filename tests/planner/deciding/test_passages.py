@@ -8,7 +8,6 @@ import pytest
 
 import utak
 from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
-from tests.tables import few
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
 from utak.kb.localisation.hypotheses.walk_outcomes import squares_passed
@@ -66,7 +65,8 @@ def all_felt_situation(rows: list[str]) -> Situation:
     return situation_of(all_felt(known_situation(rows).model))
 
 
-@pytest.mark.parametrize(("low", "high", "heading"), few([(2.05, 3.95, 0), (3.6, 4.3, 180)], 1))
+@pytest.mark.long
+@pytest.mark.parametrize(("low", "high", "heading"), [(2.05, 3.95, 0), (3.6, 4.3, 180)])
 def test_the_robot_goes_on_through_an_opening_that_fills_no_square(low: float, high: float, heading: int) -> None:
     scenario = utak.Scenario.from_text(two_rooms(low, high, heading), "in(utak, room(next)).", expect=BEYOND)
     episode = utak.Run(scenario).finish()

@@ -201,10 +201,8 @@ def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
 def test_after_a_restart_an_object_is_not_said_to_be_in_the_next_room(lost: bool) -> None:
     situation = beside(())
     (node,) = situation.model.objects
-    transporter, stage = (
-        Transporter(place=lambda *_: Placement({}, holds=True)),
-        Stage(facts_from_text("through(x, d).")),
-    )
+    transporter, stage = Transporter(), Stage(facts_from_text("through(x, d)."))
+    transporter.place = lambda *_: Placement({}, holds=True)
     transporter.origin_of("x", node, situation)
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
     decision = transporter.towards(stage.goals[0], turn_of(stage, after))
@@ -258,12 +256,12 @@ def test_an_object_that_does_not_move_proves_nothing_while_the_frame_is_open(
     tools = tools_with(PlanExecutor(plan=plan))
     view = situation.model.view._replace(sure=sure)
     fixed = replace(situation.model, objects=(replace(node, movable=0),), view=view)
-    reconciled = Reconciliation({}, ("x",), (), (), (("x", node.name),))
+    reconciled = Reconciliation({}, ("x",), (), (), unmovable=(("x", node.name),))
     looking = Transporter().towards(stage.goals[0], turn_of(stage, situation_of(fixed, {}), tools, reconciled))
     assert looking.command is not None  # for another x
-    seen_all = Transporter(search=lambda *_: [])
+    seen_all = Transporter()
+    seen_all.search = lambda *_: []
     decision = seen_all.towards(stage.goals[0], turn_of(stage, situation_of(fixed, {}), tools, reconciled))
-    assert decision is not None
     assert (decision.command, decision.verdict) == (None, verdict)
     assert f"{node.name} cannot be moved" in decision.why
 

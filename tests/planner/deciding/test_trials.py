@@ -43,7 +43,7 @@ def test_what_did_not_move_is_pushed_other_ways_each_once() -> None:
     model, trials, tools, pushes = felt(SMALL, stuck=1).model, Trials(), tools_with(), list[tuple[float, float]]()
     for _ in range(40):
         turn = turn_of(ELSEWHERE, situation_of(model), tools)
-        begun = trials.begun(turn.situation)
+        begun = trials.is_pushing(turn.situation)
         command = (trials.go_on(turn) if begun else trials.next((), turn)).command
         if command is None and not begun:
             break

@@ -10,8 +10,8 @@ from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import BESIDE_A_THING, situation_of
 from utak.geometry.manipulation.goals import At, End, InCorner, Inside, is_goal_met, shape_at_pose
 from utak.geometry.motion.se2 import Pose
-from utak.planner.goals.joint import conflicting_goals, enclosing_region, opposite_corners_reason
-from utak.planner.goals.placement import Placement
+from utak.planner.goals.joint import conflicting_goals, enclosing_region, is_apart_from_start, too_far_reason
+from utak.planner.goals.placement import KnownEnds, Placement
 
 THING = shapely.box(3, 3, 6, 5)
 NORTHEAST, SOUTHWEST = InCorner(20.0, 16.0, 1, 1), InCorner(0.0, 0.0, -1, -1)
@@ -57,15 +57,74 @@ def test_a_shape_that_meets_an_end_lies_within_its_enclosing_region(
         assert enclosing_region(end, THING).buffer(1e-5).covers(lying)
 
 
+def test_places_of_which_one_must_be_reached_count_where_a_goal_may_hold_at_others() -> None:
+    near, far = Inside(shapely.box(0, 0, 9, 9)), Inside(shapely.box(20, 0, 29, 9))
+    one, other, movable = (
+        Placement({"e": At(Pose(0.0, 0.0, 0.0))}, some=True, must_reach=KnownEnds(places))
+        for places in ({"near": near}, {"far": far}, {})
+    )
+    assert conflicting_goals([one, other], THING) == (0, 1)
+    assert conflicting_goals([one, one], THING) is None
+    assert conflicting_goals([movable, other], THING) is None  # beside a thing that can be brought elsewhere
+
+
 def test_opposite_corners_are_too_far_apart() -> None:
     situation = situation_of(known_model(BESIDE_A_THING))
     both = facts_from_text("at(utak, corner(northeast)). at(utak, corner(southwest)).")
-    assert "too far apart" in opposite_corners_reason(both, situation)
+    assert "too far apart" in too_far_reason(both, situation)
     one_side = facts_from_text("at(utak, corner(northeast)). at(utak, corner(northwest)).")
-    assert opposite_corners_reason(one_side, situation) == ""  # with more floor they may be one corner
+    assert too_far_reason(one_side, situation) == ""  # with more floor they may be one corner
 
 
 def test_opposite_corners_of_a_nook_are_near_enough() -> None:
     situation = situation_of(known_model(["bbbb", "b.Ub", "b..b", "bbbb"]))
     both = facts_from_text("at(utak, corner(northwest)). at(utak, corner(southeast)).")
-    assert opposite_corners_reason(both, situation) == ""
+    assert too_far_reason(both, situation) == ""
+
+
+def test_a_square_on_its_corner_fills_a_room_as_wide_as_its_diagonal() -> None:
+    room = ["b" * 14, *["b" + "." * 12 + "b"] * 5, "b" + "." * 6 + "U" + "." * 5 + "b"]
+    situation = situation_of(known_model([*room, *["b" + "." * 12 + "b"] * 6, "b" * 14]))
+    both = facts_from_text("at(x, corner(northeast)). at(x, corner(southwest)).")
+    assert too_far_reason(both, situation, length=12.0) == ""
+    assert "too far apart" in too_far_reason(both, situation, length=9.0)
+
+
+@pytest.mark.parametrize(("west", "found"), [(3, True), (12, True), (15, False)])
+def test_a_corner_only_comes_to_lie_further_from_a_place_that_the_task_says(west: int, found: bool) -> None:
+    situation = situation_of(known_model(BESIDE_A_THING))
+    goals = facts_from_text("at(x, corner(northeast)).")
+    reason = too_far_reason(goals, situation, 4.0, {"here": shapely.box(west, 12, west + 3, 15)})
+    assert bool(reason) == found
+
+
+HALLS = [
+    "b" * 32,
+    *["b" + "." * 14 + "bb" + "." * 14 + "b"] * 5,
+    "b" + "." * 30 + "b",
+    "b" + "." * 6 + "U" + "." * 23 + "b",
+    "b" + "." * 30 + "b",
+    *["b" + "." * 14 + "bb" + "." * 14 + "b"] * 5,
+    "b" * 32,
+]
+
+
+@pytest.mark.parametrize(
+    ("rows", "goals", "found"),
+    [
+        (HALLS, "at(utak, start). in(utak, room(next)).", True),
+        (HALLS, "at(utak, start). at(utak, corner(northeast)).", False),
+        (HALLS, "in(utak, room(next)).", False),
+        (
+            [row.replace("U", ".")[:14] + "U" + row[15:] if "U" in row else row for row in HALLS],
+            "in",
+            False,
+        ),  # at a door
+        ([*HALLS[:7], "b" + "." * 6 + "U" + "." * 23 + "?", *HALLS[8:]], "around", True),
+    ],
+)
+def test_where_the_robot_woke_is_not_in_the_next_room(rows: list[str], goals: str, found: bool) -> None:
+    asked = {"in": "at(x, start). in(x, room(next)).", "around": "at(x, start). around(x, corner)."}
+    situation = situation_of(known_model(rows))
+    facts = facts_from_text(asked.get(goals, goals))
+    assert is_apart_from_start(facts, situation.model.frame.origin, situation) == found

@@ -47,6 +47,7 @@ JAGGED = [  # the seen part of the next room leaves no place for the object righ
 ]
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(st.integers(1, 10), st.integers(1, 23))
 def test_only_unseen_squares_within_the_margin_are_assumed(row: int, column: int) -> None:

@@ -92,6 +92,7 @@ def test_the_thing_that_a_goal_refers_to_is_brought(goal: str) -> None:
     assert episode.verdict == "done"
 
 
+@pytest.mark.long
 def test_the_whole_track_winds_about_what_was_drawn_off_a_wall_also_after_the_way_back() -> None:
     world = """table(21, 24).
 verge("POLYGON ((0 0, 0 24, 21 24, 21 0, 0 0), (20 2, 20 23, 2 23, 2 2, 20 2))").

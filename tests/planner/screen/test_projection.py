@@ -57,6 +57,7 @@ def random_walk(seed: int) -> WorldModel:
     return walked(rows, way).model
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", WALKS)
 def test_the_projection_is_monotone(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
@@ -332,6 +333,7 @@ def test_no_move_ends_near_a_grid_line_at_any_turn_while_the_orientation_is_unce
     assert whole > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pace", [WALKING_PACE, CARRYING_PACE])
 def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_bold(pace: Pace) -> None:
     model = replace(known_model(HALL), likely_spread=math.pi)

@@ -19,6 +19,7 @@ def sweep(columns: int, rows: int) -> shapely.Geometry:
     return shapely.MultiPoint(corners).convex_hull
 
 
+@pytest.mark.long
 @settings(max_examples=200, deadline=None)
 @given(whole, whole)
 def test_swept_squares_are_those_with_an_interior_that_is_met(columns: int, rows: int) -> None:
@@ -43,6 +44,7 @@ def test_a_sweep_is_free_exactly_when_it_meets_no_blocked_square(rows: int, colu
     assert sweep_is_free(free, a, b) == sweep_is_free(free, b, a)
 
 
+@pytest.mark.long
 @settings(max_examples=200, deadline=None)
 @given(st.integers(3, 12), st.integers(3, 12), st.integers(0, 2**32 - 1), st.booleans())
 def test_a_line_sweep_is_free_exactly_when_it_meets_no_blocked_square(

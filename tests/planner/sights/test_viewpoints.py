@@ -17,7 +17,14 @@ from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import CARRYING_PACE, one_move_squares
 from utak.planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, dilate
 from utak.planner.sights.frontiers import FOVEA_RANGE, MIDDLE_ZONE_RANGE
-from utak.planner.sights.viewpoints import MIN_APPROACH_PROBABILITY, TO_REACH, TO_TAKE, Approach, inspection_squares
+from utak.planner.sights.viewpoints import (
+    MIN_APPROACH_PROBABILITY,
+    TO_REACH,
+    TO_TAKE,
+    Approach,
+    inspection_squares,
+    sightings,
+)
 
 ROOM = [row[:4] + "U" + row[5:] if k == 38 else row for k, row in enumerate(drawing(30, 20, 4, 4))]
 
@@ -177,3 +184,11 @@ def test_an_object_for_a_corner_is_approached_from_the_side_away_from_its_walls(
         -1,
     )
     assert approach_for_goals([facts_from_text("beside(x, y).")[0]], situation) == TO_TAKE
+
+
+def test_what_all_completions_show_is_still_no_more_than_likely() -> None:
+    model = known_model(ROOM)
+    model = replace(model, view=model.view._replace(state=np.full_like(model.view.state, OPEN)))
+    likely = model.mask(model.objects[0].patch).astype(np.float64)
+    found = sightings(CostMaps(model), likely, "it may be there", TO_TAKE)
+    assert [look.chance for _, look in found] == [99]

@@ -26,7 +26,7 @@ from utak.planner.skills.measure_size import MAX_SIZE_PUSHES, SizeEstimator
 def test_an_object_is_measured_before_the_missing_width_is_said(
     task: int, seed: int, kind: str, tmp_path: Path
 ) -> None:
-    trial = run_trial(task, seed, Conditions(kind=kind, seconds=3600), tmp_path)
+    trial = run_trial(task, seed, Conditions(kind=kind, seconds=3600, max_steps=300), tmp_path)
     assert trial.verdict == "possible_if", (trial.verdict, trial.reason, trial.crash)
     assert trial.narrow is not None
     assert trial.narrow.right, trial.reason

@@ -23,7 +23,6 @@ from utak.kb.world.model import Node
 from utak.planner.advice import Act, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
 from utak.planner.carrying.remaining_plan import RemainingPlan
-from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import Decision, TaskVerdict
 from utak.planner.goals.placement import Placement, to_view_frame
@@ -121,9 +120,7 @@ def test_an_object_that_did_not_move_or_may_not_be_pulled_is_released_before_a_l
     assert command_to_see(transporter, situation, tools) == Release()
 
 
-def exploring(
-    situation: Situation, squares: SquareIndices, viewpoints: bool, pursuer: Pursuer | None = None
-) -> Decision:
+def exploring(situation: Situation, squares: SquareIndices, viewpoints: bool, tools: Tools | None = None) -> Decision:
     """Return what is decided while it is not known where an object must end, and some squares are worth a look.
 
     viewpoints : whether the robot must look from just these squares; else from anywhere.
@@ -131,12 +128,15 @@ def exploring(
     looks = (Viewpoint(squares, "what may be a door is not clear"),)
     nowhere = Placement({}, "it is not seen yet", looks if viewpoints else ())
     subgoals = [Subgoal(SubgoalKind.EXPLORE, squares, "it goes on unseen")]
-    transporter = Transporter(lambda *_: nowhere, lambda *_: subgoals)
     (goal,) = facts_from_text("around(x, corner).")
-    tools = tools_with(pursuer=pursuer)
-    decision = transporter.towards(goal, turn_of(Stage((goal,)), situation, tools))
-    assert decision is not None
-    return decision
+    return transporter_where(nowhere, subgoals).towards(goal, turn_of(Stage((goal,)), situation, tools))
+
+
+def transporter_where(land: Placement, subgoals: list[Subgoal]) -> Transporter:
+    """Return a transporter for which goals hold at one placement, and that finds some subgoals while they do not."""
+    transporter = Transporter()
+    transporter.place, transporter.search = lambda *_: land, lambda *_: subgoals
+    return transporter
 
 
 def beside(stuck: int = 0) -> Situation:
@@ -216,8 +216,9 @@ def test_an_object_that_did_not_move_is_not_led_out_again() -> None:
 def at_a_loss(situation: Situation) -> Decision:
     """Return what is decided with a held object, no way for it known, and nothing left to look at or feel."""
     unproved = replace(situation, model=replace(situation.model, shaken=True))
-    pursuer = Pursuer("skeleton", contacts=lambda _: [])
-    return exploring(unproved, at(situation), viewpoints=False, pursuer=pursuer)
+    tools = tools_with()
+    tools.pursuer.contacts = lambda _: []
+    return exploring(unproved, at(situation), viewpoints=False, tools=tools)
 
 
 def test_a_robot_that_is_shut_in_and_at_a_loss_leads_the_object_out() -> None:
@@ -235,7 +236,7 @@ def test_an_object_that_shuts_the_robot_in_is_taken_along_once() -> None:
     looks = (Viewpoint(at(situation, (-5, -5)), "a room is not seen"),)
     land = Placement({}, "a room is not seen", looks, shut_in=True)
     subgoals = [Subgoal(SubgoalKind.INSPECT, looks[0].squares, looks[0].what)]
-    transporter, tools = Transporter(lambda *_: land, lambda *_: subgoals), tools_with()
+    transporter, tools = transporter_where(land, subgoals), tools_with()
     (goal,) = facts_from_text("at(x, corner(northeast)).")
     stage = Stage((goal,))
     decisions = [transporter.towards(goal, turn_of(stage, situation, tools)) for _ in range(2)]

@@ -84,6 +84,7 @@ def test_an_object_that_is_known_exactly_is_only_drawn_back() -> None:
     assert tuple(retreat_push(node, NORTH, model)) == pytest.approx((0.0, -RETREAT))
 
 
+@pytest.mark.long
 @given(st.floats(0.0, 1.0), st.sampled_from([4.0, 4.6, 5.0]))
 @settings(max_examples=20, deadline=None)
 def test_an_object_that_is_stopped_again_by_nothing_known_is_brought_to_the_middle(part: float, wide: float) -> None:

@@ -19,7 +19,15 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.carry import CarryOracle
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
-from utak.planner.tasking.rule_effects import doors_led_round, rules_about_doors, rules_that_close, rules_without_plan
+from utak.planner.tasking.rule_effects import (
+    DoorRules,
+    doors_led_round,
+    facts_rules_read,
+    rules_about_doors,
+    rules_close_all_doors,
+    rules_that_close,
+    rules_without_plan,
+)
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.setting import WhereGoalsHold, problem_of
 from utak.simulator.scenario.settings import Settings
@@ -29,11 +37,12 @@ WALL = "b" * 30
 SIDE, MIDDLE = "." * 12, "." * 16
 
 
-def three_rooms(middle: Mapping[int, str]) -> list[str]:
+def three_rooms(middle: Mapping[int, str], first: tuple[int, int] = (5, 4)) -> list[str]:
     """Return three rooms; a door of 4 leads west from the middle one, one of 6 east. middle : its rows, by number."""
+    # first : the first row of each door
     rows = []
     for number in range(14):
-        west, east = (".." if least <= number <= 13 - least else "bb" for least in (5, 4))
+        west, east = (".." if least <= number <= 13 - least else "bb" for least in first)
         rows.append(f"b{SIDE}{west}{middle.get(number, MIDDLE)}{east}{SIDE}b")
     return ["b" * len(rows[0]), *rows, "b" * len(rows[0])]
 
@@ -76,9 +85,15 @@ def made_with(
     return make_plan(problem, situation, CarryOracle(problem, situation)), situation
 
 
-def walk_with(rules: tuple[Path, ...]) -> tuple[MadePlan, Situation]:
-    """Return the plan of a robot that shall go to a room next to that in which it is."""
-    situation = situation_with(WALKER, rules, {})
+NO_DOOR_RULES = DoorRules()
+
+
+def walk_with(
+    rules: tuple[Path, ...], rows: list[str] = WALKER, found: DoorRules = NO_DOOR_RULES
+) -> tuple[MadePlan, Situation]:
+    """Return the plan of a robot that shall go to a next room. found : what rules do to doors."""
+    situation = situation_with(rows, rules, {})
+    situation = replace(situation, door_prices=found.prices, door_reliefs=found.reliefs)
     stage = Stage(facts_from_text("in(utak, room(next))."))
     problem = problem_of(stage, situation, WhereGoalsHold(goal_placement, lambda *_: (0.5, 0.5), destination))
     assert problem is not None and len(problem.stands) == 2
@@ -129,13 +144,59 @@ def test_a_narrow_door_is_not_passed_and_is_closed_to_the_robot() -> None:
     assert rules_about_doors(situation).closed == frozenset() and not without.plan.unmet
 
 
+def test_all_that_rules_read_of_the_world_counts_for_a_plan_that_is_kept(tmp_path: Path) -> None:
+    """What is not read does not count, nor what the plan itself changes."""
+    own = tmp_path / "own.lp"
+    own.write_text(
+        ":- occurs(go(D), T), door(D, C), C < 95, lies(utak, P, r1), at(utak, P, T).\n"
+        ":- unseen(R, N), in(utak, R), N > 900."
+    )
+    situation = situation_with(WALKER, (own,), {})
+    read = {fact.partition("(")[0] for fact in facts_rules_read(situation)}
+    assert read == {"door", "unseen", "in"}
+    assert facts_rules_read(situation_with(WALKER, (), {})) == frozenset()
+
+
+@pytest.mark.parametrize(("width", "all_"), [("", True), (", width(D, W), W < 450", False)])
+def test_rules_close_whatever_door_may_be_found_where_they_read_nothing_of_it(
+    tmp_path: Path, width: str, all_: bool
+) -> None:
+    """A fact that would show another door overturns nothing where a rule closes every door."""
+    own = tmp_path / "own.lp"
+    own.write_text(f":- occurs(go(D), T){width}.")
+    situation = situation_with(WALKER, (own,), {})
+    closed = replace(situation, closed=rules_about_doors(situation).closed)
+    assert closed.closed and rules_close_all_doors(closed) is all_
+
+
+def test_a_door_that_is_hardly_one_is_closed_by_a_rule_about_confidence(tmp_path: Path) -> None:
+    own = tmp_path / "own.lp"
+    own.write_text(":- occurs(go(D), T), door(D, C), C < 95.")
+    situation = situation_with(WALKER, (own,), {})
+    west, east = situation.rooms.doors
+    unsure = replace(situation, rooms=replace(situation.rooms, doors=(replace(west, confidence=60), east)))
+    assert rules_about_doors(unsure).closed == {west.name} and not rules_about_doors(situation).closed
+
+
 def test_a_door_with_a_price_is_led_round_and_not_closed() -> None:
     made, situation = walk_with(rule("10"))
     (errand,) = made.plan.errands
     assert [width_of(door, situation) for door in errand.doors] == [6.0]
     found = rules_about_doors(situation)
-    assert found.closed == frozenset() and [(width_of(d, situation), n) for d, n in found.prices.items()] == [(4.0, 20)]
+    assert found.closed == frozenset() and [(width_of(d, situation), n) for d, n in found.prices.items()] == [(4.0, 10)]
     assert [len(doors) for doors in doors_led_round(made, situation)] == [1]
+
+
+@pytest.mark.parametrize("first", [(6, 5), (5, 6)])
+def test_of_two_priced_doors_that_which_may_be_wide_enough_is_passed(first: tuple[int, int]) -> None:
+    """A door of 2 squares is narrower than 5 in any case; one of 4 counts half, for it may be up to 6 wide."""
+    rows = three_rooms({8: "....U..........."}, first)
+    _, situation = walk_with(rule("10"), rows)
+    found = rules_about_doors(situation)
+    assert {width_of(door, situation): price for door, price in found.prices.items()} == {2.0: 20, 4.0: 10}
+    made, _ = walk_with(rule("10"), rows, found)
+    (errand,) = made.plan.errands
+    assert [width_of(door, situation) for door in errand.doors] == [4.0]
 
 
 @pytest.mark.parametrize("name", ["02", "03"])
@@ -183,6 +244,7 @@ def test_nothing_big_is_brought_through_doors(rows: list[str], unmet: tuple[str,
     assert bool(rules_without_plan(made, situation)) == bool(unmet)
 
 
+@pytest.mark.long
 def test_a_thing_is_moved_aside_within_its_room() -> None:
     rooms = []
     for rules in ((), rule("06")):
@@ -192,6 +254,7 @@ def test_a_thing_is_moved_aside_within_its_room() -> None:
     assert rooms[1] == 1
 
 
+@pytest.mark.long
 def test_a_goal_of_the_users_own_is_attained() -> None:
     bound = {"x": "g", "y": "h"}
     ends = {"g": moved(0, 2)}
@@ -214,6 +277,7 @@ def test_nothing_is_touched_where_a_rule_leaves_no_plan(tmp_path: Path) -> None:
     assert not any(isinstance(command, Grasp) for command in found.commands)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("rules", "room"), [((), "west"), (rule("01"), "east")])
 def test_the_robot_takes_another_door_where_a_rule_forbids_the_nearest(
     rules: tuple[Path, ...], room: str, tmp_path: Path

@@ -11,7 +11,7 @@ from benchmarks.worlds.drawn import drawn_problem
 from tests.planner.situations import known_situation
 from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
 from utak.geometry.motion.se2 import Pose
-from utak.kb.language.vocabulary import ROBOT
+from utak.kb.language.goal_words import ROBOT
 from utak.planner.goals.placement import to_view_frame
 from utak.planner.oracles.carry import CarryOracle, Certainty
 from utak.planner.oracles.problem import PlacedGoal, TaskProblem
@@ -158,6 +158,7 @@ def test_a_thing_in_the_way_is_moved_where_another_one_can_pass_to_where_nothing
     assert after[1] - before[1] == pytest.approx(2.0)
 
 
+@pytest.mark.long
 def test_two_things_in_a_dead_end_are_exchanged_though_one_can_leave_only_after_the_other() -> None:
     situation = known_situation(EXCHANGED)
     problem = drawn_problem(situation, {"g": moved(4, -1), "h": moved(-4, 0)})
@@ -166,6 +167,7 @@ def test_two_things_in_a_dead_end_are_exchanged_though_one_can_leave_only_after_
     assert made.plan.verified and not made.plan.unmet
 
 
+@pytest.mark.long
 def test_things_are_packed_along_the_walls_of_a_closet_and_no_place_in_a_refuted_region_is_asked_about() -> None:
     situation = known_situation(CLOSET)
     problem = drawn_problem(situation, {})

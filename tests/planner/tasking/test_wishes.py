@@ -7,8 +7,8 @@ import pytest
 
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_search import SWAPPED, WALLED_IN
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.reader import facts_from_text
-from utak.kb.language.vocabulary import ROBOT
 from utak.kb.task.task import Task
 from utak.planner.goals.object_goals import goal_placement
 from utak.planner.goals.robot_goals import destination

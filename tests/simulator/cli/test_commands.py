@@ -43,6 +43,7 @@ def test_query_asks_a_run_at_a_step(scene: Path, capsys: pytest.CaptureFixture[s
     }
 
 
+@pytest.mark.long
 def test_rows_beyond_the_limit_are_announced(
     scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -89,6 +90,7 @@ def test_a_picture_of_the_truth_is_labelled_so(
     assert capsys.readouterr().err.count("the true table") == 2
 
 
+@pytest.mark.long
 def test_query_asks_an_episode(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(tmp_path / "ep.jsonl")
     main(["run", str(scene), "--log", path])

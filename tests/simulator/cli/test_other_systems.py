@@ -51,6 +51,7 @@ sys.exit(main(sys.argv[1:]))
 """.replace("from tests_of import", f"sys.path.insert(0, {str(Path(__file__).parents[1])!r}); import")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_the_commands_work(system: str, tmp_path: Path) -> None:
     folder, log = str(write_scene(tmp_path / "s", 1)), str(tmp_path / "ep.jsonl")

@@ -13,9 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import write_scene
 
-from tests.tables import few
 from utak.simulator.cli.main import main
-from utak.simulator.terminal.streams import GuardedStream, StreamError, escape_controls
+from utak.simulator.terminal.streams import GuardedStream, StreamError, escape_controls, one_line
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "\x1b[2J\x1b]0;owned\x07\r\x9b31m\u202egnp.exe\u2066\x7f\b\u2028"
@@ -62,7 +61,8 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("command", "redirect", "code"), few(CASES, 6))
+@pytest.mark.long
+@pytest.mark.parametrize(("command", "redirect", "code"), CASES)
 def test_a_broken_stream_gives_a_message_of_one_line(command: str, redirect: str, code: int, folder: Path) -> None:
     done = utak(command, folder, redirect, stdin="help\n")
     said = done.stderr.decode()
@@ -89,6 +89,7 @@ def test_a_command_ends_quietly_when_its_reader_ends(folder: Path) -> None:
 ASCII = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("environment", [ASCII, {"PYTHONIOENCODING": "ascii"}])
 @pytest.mark.parametrize(
     ("command", "code"),
@@ -105,7 +106,7 @@ def test_escaped_text_has_no_control_characters_and_stays_json(text: str) -> Non
     assert not OBEYED.search(escape_controls(text))
     assert escape_controls(json.dumps(text)) == json.dumps(text).replace("\x7f", "\\u007f")
     assert json.loads(escape_controls(json.dumps(text))) == text
-    assert "\n" not in escape_controls(text, lines=False)
+    assert "\n" not in one_line(text)
 
 
 def test_a_closed_vital_stream_raises_and_another_is_noted() -> None:

@@ -20,7 +20,7 @@ from random_scenes import write_scene
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
-from utak.simulator.run.story import RecordedStory
+from utak.simulator.run.story import recorded_story
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.terminal.action_in_words import describe
 
@@ -40,7 +40,7 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
 
 def looked_through(path: Path) -> None:
     """Read an episode and do with every step what the prompt does."""
-    story = RecordedStory(str(path), read_episode(path))
+    story = recorded_story(str(path), read_episode(path))
     while True:
         assert isinstance(story.facts, list)
         assert story.picture()
@@ -200,6 +200,7 @@ def test_a_changed_episode_is_read_or_refused(data: st.DataObject, lines: list[d
         assert PLACE.search(str(bad))
 
 
+@pytest.mark.long
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_changed_scenario_is_read_or_refused(data: st.DataObject, tmp_path: Path) -> None:

@@ -61,6 +61,7 @@ def test_an_episode_records_what_happened(tmp_path: Path) -> None:
     assert str(tmp_path) not in path.read_text()
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_bytes_under_any_hash_seed(tmp_path: Path) -> None:
     folder = write_scene(tmp_path / "s", 1)
     runs = [

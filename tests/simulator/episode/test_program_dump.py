@@ -15,6 +15,8 @@ from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.episode.program_dump import ProgramDump, dump_episode
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[3]
 RUNS = (("push_square_next_room", "0"), ("go_northeast_rooms", "0.05"))  # scenario and noise
 RULES = """\

@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 from utak.kb.body import DIRECTIONS
 from utak.kb.evidence.reason import ReasonKind
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
-from utak.simulator.cli.commands.schema import SCHEMA_NAMES
 from utak.simulator.cli.main import main
+from utak.simulator.cli.table import SCHEMA_NAMES
 from utak.simulator.episode.schema import EPISODE_LINES, EPISODE_VERSION, accepts, definitions
 from utak.simulator.scenario.settings import PATH_CHOICES
+
+pytestmark = pytest.mark.long
 
 jsonschema = pytest.importorskip("jsonschema")
 ROOT = Path(__file__).resolve().parents[3]
@@ -124,7 +126,7 @@ def test_trees_of_reasons_and_sweeps_have_the_forms(
     assert accepts("explain", deep)
     sweep = ["sweep", scenario, "--seeds", "0:2", "--max-steps", "1", "-o", str(rows), "--json"]
     summary = printed(capsys, *sweep)
-    lines = [json.loads(line) for line in rows.read_text().splitlines()][1:]
+    lines = [json.loads(line) for line in rows.read_text().splitlines()]
     assert len(lines) == 2
     for name, value in (("sweep", summary), ("sweep_row", lines[0]), ("sweep_row", {**lines[1], "result": None})):
         assert [error.message for error in validators[name].iter_errors(value)] == []

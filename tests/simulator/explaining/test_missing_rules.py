@@ -14,7 +14,9 @@ from utak.simulator.explaining.missing_rules import missing_rules
 from utak.simulator.repl.commands import PROMPT_COMMANDS
 from utak.simulator.repl.dialogue import Dialogue
 from utak.simulator.repl.printer import Printer
-from utak.simulator.run.recorded_story import RecordedStory
+from utak.simulator.run.story import recorded_story
+
+pytestmark = pytest.mark.long
 
 TWO = "2 files of rules took part in this run, and "
 END = "took part in this run"
@@ -65,7 +67,7 @@ def test_each_way_to_ask_says_it_once_and_keeps_silent_when_all_rules_are_given(
         assert err.count(END) == count and END not in out
         assert err.count("--kb FILE") == count
     with QueryEngine() as engine:
-        dialogue = Dialogue(RecordedStory(str(log), read_episode(log)), engine, Printer(), PROMPT_COMMANDS)
+        dialogue = Dialogue(recorded_story(str(log), read_episode(log)), engine, Printer(), PROMPT_COMMANDS)
         for statement in ("why step.", "whynot held(o1).", "why big(o1)."):
             dialogue.obey(statement)
     assert capsys.readouterr().err.count(END) == 1

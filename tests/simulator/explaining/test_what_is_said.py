@@ -10,6 +10,8 @@ from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import Episode, read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[3]
 CLASSES = ("square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc")  # those that exclude each other
 
@@ -57,6 +59,14 @@ def test_a_question_with_variables_takes_the_surest(questions: Questions) -> Non
     assert f"1 of {len(sure)} that fit" in found.because
 
 
+def test_a_goal_that_depends_on_where_its_thing_was_at_first_says_where(questions: Questions) -> None:
+    last, steps = questions.last_step, questions.beliefs.record.steps
+    (first,) = [one for one in questions.why("in(x,room(next))", last).rests_on if "was at first" in one.because]
+    node = steps[last].bound["x"]
+    places = [fact for one in steps for fact in one.facts if fact.startswith(f"offset({node},")]
+    assert first.claim == places[0] != places[-1]
+
+
 def test_a_refutation_says_what_it_rests_on_and_what_geometry_found(questions: Questions) -> None:
     at = next(n for n, step in enumerate(questions.beliefs.record.steps) if any("refuted(" in f for f in step.facts))
     found = questions.why("refuted(S,R)", at)
@@ -70,8 +80,13 @@ def test_why_not_of_derived_facts_names_what_the_rule_lacks(questions: Questions
     assert "no neck was measured" in questions.why_not("door(d7)", 0).because
 
 
+def test_a_verdict_is_given_at_the_last_step_alone(questions: Questions) -> None:
+    verdict = questions.why("verdict(V)").claim
+    assert f"given at step {questions.last_step} alone" in questions.why_not(verdict, 2).because
+
+
 def test_what_the_robot_decided_is_not_called_measured(questions: Questions) -> None:
-    kinds = {one.claim.partition("(")[0]: one.kind for one in questions.why_step(2).leaves()}
+    kinds = {one.claim.partition("(")[0]: one.kind for one in questions.why_step(2).walk() if not one.rests_on}
     decided = {"horizon", "planned", "missing", "came_to", "place"} & kinds.keys()
     assert decided and all(kinds[name] == ReasonKind.DECIDED for name in decided)
 

@@ -2,6 +2,8 @@
 
 import math
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 from itertools import pairwise
 from pathlib import Path
@@ -12,8 +14,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from utak.simulator.cli.main import main
-from utak.simulator.importing.svg_path import SvgError, parse_path, parse_transform
 from utak.simulator.scenario.scenario import Scenario, read_scenario
+
+pytest.importorskip("svg.path")
+
+from utak.simulator.importing.svg_outlines import SvgError, parse_transform, rings_of
 
 SHARED = Path("/work/shared/data/namosim")
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 90">\n'
@@ -61,6 +66,7 @@ def test_the_marker_of_a_goal_lies_on_the_grid(place: str, tmp_path: Path) -> No
     assert marker.covers(shapely.Point(1 + (x + 5) / 5, 1 + (90 - y - 5) / 5))
 
 
+@pytest.mark.long
 def test_outlines_of_a_file_have_a_bounded_number_of_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arcs = "<path d='M 0 0 " + "a 1e5 1e5 0 1 1 0 .1 " * 300 + "z'/>"
     (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, WALL + arcs * 15))
@@ -152,8 +158,8 @@ WRONG = {  # a file, the text at the place of the message (the begin of the file
     "cells too small": (WHOLE.replace('cm="5"', 'cm="0.01"'), "0.01", "4096"),
     "no robot": (WHOLE.replace('agent_id="r"', 'agent_id="q"'), 'q"><goal', "'q'"),
     "no agent": (WHOLE.replace("agent", "tenant"), "<namo_config", "no agent"),
-    "half a path": (WHOLE.replace("h 15 v", "h v"), "v 15 h", "command h"),
-    "a path of letters": (WHOLE.replace("h 15 v", "k 15 v"), "k 15", "'k'"),
+    "half a path": (WHOLE.replace("h 15 v", "h v"), "m 60,30 h v", "wrong numbers"),
+    "a path of letters": (WHOLE.replace("h 15 v", "k 15 v"), "m 60,30 k", "'k'"),
     "an outline that crosses itself": (WHOLE.replace("h 15 v 15 h -15", "h 15 l -15,15 h 15"), "m 60,30 h", "crosses"),
     "an outline of a line": (WHOLE.replace("h 15 v 15 h -15", "h 15"), "m 60,30 h", "three points"),
     "an obstacle in a wall": (WHOLE.replace("m 60,30", "m 60,0"), "m 60,0", "overlaps a wall"),
@@ -163,7 +169,7 @@ WRONG = {  # a file, the text at the place of the message (the begin of the file
     "a robot beyond": (WHOLE.replace("m 30,40", "m 300,40"), "m 300,40", "beyond"),
     "a robot in a wall": (WHOLE.replace("m 30,40", "m 30,-4"), "", "inside the verge"),
     "a transform of words": (WHOLE.replace('="wall"', '="wall" transform="turn(1)"'), "turn(1)", "turn"),
-    "an endless number": (WHOLE.replace("M 0,0", "M 1e999,0"), "1e999", "numbers"),
+    "an endless number": (WHOLE.replace("M 0,0", "M 1e999,0"), "M 1e999", "numbers"),
     "an endless view box": (WHOLE.replace("0 0 120 90", "0 0 1e999 10"), "0 0 1e999 10", "viewBox"),
     "an endless cell": (WHOLE.replace('cm="5"', 'cm="1e-320"'), "1e-320", "cell_size_cm"),
     "a skew of a quarter turn": (WHOLE.replace('="wall"', '="wall" transform="skewX(90)"'), "skewX", "stretches"),
@@ -174,7 +180,7 @@ WRONG = {  # a file, the text at the place of the message (the begin of the file
     ),
     "stretched in one": (WHOLE.replace('="wall"', '="wall" transform="scale(1e9) scale(1e9)"'), "scale", "stretches"),
     "moved far away": (WHOLE.replace('="wall"', '="wall" transform="translate(1e9)"'), "M 0,0", "squares away"),
-    "a pin of an arc": (WHOLE.replace("h 15 v 15 h -15", "A1e9 1e-9 0 0 1 9 9"), "m 60,30", "outline"),
+    "a pin of an arc": (WHOLE.replace("h 15 v 15 h -15", "A1e9 1e-9 0 0 1 9 9"), "m 60,30", "numbers"),
     "an entity": (f'<!DOCTYPE svg [<!ENTITY a "x">]>\n{WHOLE}', "[", "entities"),
     "an entity from outside": (f'<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]>\n{WHOLE}', "[", "entities"),
     "an unknown entity": (WHOLE.replace('"box"', '"&boxes;"'), '<path id="&', "no XML"),
@@ -215,7 +221,7 @@ def test_chords_stay_near_a_bezier_curve(
 ) -> None:
     points = control if cubic else control[:2]
     data = f"M {begin[0]},{begin[1]} {'C' if cubic else 'Q'} " + " ".join(f"{x},{y}" for x, y in points) + " L 99 99"
-    rings = parse_path(data, 0.05)
+    rings = rings_of(data, 0.05)
     assume(rings and len(rings[0]) > 2)
     chords = shapely.LineString(rings[0][:-1])
     for step in range(41):
@@ -241,7 +247,7 @@ def test_chords_stay_near_an_arc(
     begin, end = at(first), at(first + signed)
     flags = f"{int(turn > math.pi)}{int(not back)}"
     data = f"M {begin.real!r} {begin.imag!r} A {rx!r} {ry!r} {tilt!r} {flags} {end.real!r} {end.imag!r} L 999 999"
-    chords = shapely.LineString(parse_path(data, 0.05)[0][:-1])
+    chords = shapely.LineString(rings_of(data, 0.05)[0][:-1])
     for step in range(51):
         point = at(first + signed * step / 50)
         assert chords.distance(shapely.Point(point.real, point.imag)) <= 0.06
@@ -259,16 +265,13 @@ def test_chords_stay_near_an_arc(
     ],
 )
 def test_path_data_is_read_as_svg_says(text: str, rings: list[list[tuple[float, float]]]) -> None:
-    assert parse_path(text, 0.1) == rings
+    assert [ring.tolist() for ring in rings_of(text, 0.1)] == [[list(point) for point in ring] for ring in rings]
 
 
-@pytest.mark.parametrize(
-    ("text", "at"), [("L 0 0", 0), ("M 0", 3), ("M 0 0 z 1", 8), ("M 0 0 A 1 1 0 2 0 1 1", 14), ("M 0 0 L", 7)]
-)
-def test_errors_of_path_data_name_their_place(text: str, at: int) -> None:
-    with pytest.raises(SvgError) as caught:
-        parse_path(text, 0.1)
-    assert caught.value.at == at
+@pytest.mark.parametrize("text", ["L 0 0 z", "M 0", "M 0 0 z 1", "M 0 0 A 1 1 0 2 0 1 1", "M 0 0 L", "M 0 0 k 1", "z"])
+def test_path_data_that_is_none_is_refused(text: str) -> None:
+    with pytest.raises(SvgError):
+        rings_of(text, 0.1)
 
 
 @settings(max_examples=60, deadline=None)
@@ -291,9 +294,95 @@ def test_errors_of_path_data_name_their_place(text: str, at: int) -> None:
     ),
 )
 def test_transforms_are_carried_out_from_the_last_to_the_first(point: tuple[float, float], parts: list[str]) -> None:
+    def after(text: str, at: tuple[float, float]) -> tuple[float, float]:
+        x, y, _ = parse_transform(text) @ [*at, 1]
+        return x, y
+
     wanted = point
     for part in reversed(parts):
-        wanted = parse_transform(part).of(wanted)
-    assert parse_transform(" ".join(parts)).of(point) == pytest.approx(wanted, rel=1e-9, abs=1e-6)
-    assert parse_transform("rotate(90 1 2)").of((2, 2)) == pytest.approx((1, 3))
-    assert parse_transform("skewX(45)").of((0, 1)) == pytest.approx((1, 1))
+        wanted = after(part, wanted)
+    assert after(" ".join(parts), point) == pytest.approx(wanted, rel=1e-9, abs=1e-6)
+    assert after("rotate(90 1 2)", (2, 2)) == pytest.approx((1, 3))
+    assert after("skewX(45)", (0, 1)) == pytest.approx((1, 1))
+
+
+HOLE = "M 85,15 v 20 h 20 v -20 z"
+OUTER = "M 80,10 h 30 v 30 h -30 z"
+SAME_WAY = "M 85,15 h 20 v 20 h -20 z"
+RULES = {  # what draws a frame 6 squares wide with a hole 4 wide, or without it
+    "inner ring first": (f'<path type="wall" d="{HOLE} {OUTER}"/>', True),
+    "rings that turn one way": (f'<path type="wall" d="{OUTER} {SAME_WAY}"/>', False),
+    "rings that turn one way, inner first": (f'<path type="wall" d="{SAME_WAY} {OUTER}"/>', False),
+    "even-odd": (f'<path type="wall" fill-rule="evenodd" d="{OUTER} {SAME_WAY}"/>', True),
+    "even-odd in a style": (f'<path type="wall" style="fill:red; fill-rule: evenodd" d="{SAME_WAY} {OUTER}"/>', True),
+    "even-odd on a group": (f'<g fill-rule="evenodd"><path type="wall" d="{OUTER} {SAME_WAY}"/></g>', True),
+    "even-odd taken back": (
+        f'<g fill-rule="evenodd"><path type="wall" fill-rule="nonzero" d="{OUTER} {SAME_WAY}"/></g>',
+        False,
+    ),
+    "type on a group": (f'<g type="wall"><path d="{OUTER} {HOLE}"/></g>', True),
+    "a transform in a style": (
+        '<path type="wall" style="transform: translate(-5px, 3px) scale(.5)" transform="scale(9)" '
+        'd="M 170,14 h 60 v 60 h -60 z M 180,24 v 40 h 40 v -40 z"/>',
+        True,
+    ),
+    "an inner svg": (
+        '<svg x="80" y="10" width="30" height="60" viewBox="0 0 6 6" preserveAspectRatio="xMidYMid">'
+        '<path type="wall" transform="translate(0 -3)" d="M 0,0 h 6 v 6 h -6 z M 1,1 v 4 h 4 v -4 z"/></svg>',
+        True,
+    ),
+    "use": (f'<defs><g id="f"><path d="{OUTER} {HOLE}"/></g></defs><use type="wall" xlink:href="#f" x="0"/>', True),
+    "use of a symbol": (
+        '<symbol id="f" viewBox="0 0 6 6"><path d="M 0,0 h 6 v 6 h -6 z M 1,1 v 4 h 4 v -4 z"/></symbol>'
+        '<use type="wall" href="#f" x="80" y="10" width="30" height="30"/>',
+        True,
+    ),
+    "units": ('<g type="wall"><rect x="60pt" y="10px" width="22.5pt" height="30"/></g>', False),
+    "not displayed": (
+        f'<g type="wall"><path d="{OUTER} {HOLE}"/><rect style="display:none" width="9" height="9"/></g>',
+        True,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_what_is_filled_is_as_svg_says(name: str, tmp_path: Path) -> None:
+    drawn, has_hole = RULES[name]
+    verge = imported(WHOLE.replace("</svg>", f"{drawn}</svg>"), tmp_path).world.verge
+    without = imported(WHOLE, tmp_path).world.verge
+    frame = shapely.box(17, 11, 23, 17).difference(shapely.box(18, 12, 22, 16) if has_hole else shapely.Polygon())
+    assert verge.symmetric_difference(without.union(frame)).area < 1e-9
+
+
+NOTES = {
+    "<style>path {fill-rule: evenodd}</style>": "Style sheets",
+    '<g clip-path="url(#a)"/>': "clipped",
+    '<svg width="3"/>': "inner svg",
+}
+
+
+@pytest.mark.parametrize("drawn", NOTES)
+def test_what_is_not_heeded_is_told(drawn: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    imported(WHOLE.replace("</svg>", f"{drawn}</svg>"), tmp_path)
+    assert NOTES[drawn] in capsys.readouterr().err
+
+
+def test_what_draws_itself_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, f'{WALL}<g id="a"><use href="#a"/><use href="#a"/></g>'))
+    assert main(["import", str(tmp_path / "a.svg"), str(tmp_path / "s")]) == 65
+    assert "elements are drawn" in capsys.readouterr().err
+
+
+def test_a_missing_library_is_named(tmp_path: Path) -> None:
+    """It is hidden from a process of its own."""
+    (tmp_path / "a.svg").write_text(WHOLE)
+    program = (
+        "import sys; sys.modules['svg'] = None; sys.path.insert(0, sys.argv[1])\n"
+        "from utak.simulator.cli.main import main; sys.exit(main(sys.argv[2:]))"
+    )
+    root = str(Path(__file__).parents[3])
+    command = [sys.executable, "-c", program, root, "import", str(tmp_path / "a.svg"), str(tmp_path / "s")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+    assert (done.returncode, done.stdout) == (66, "")
+    assert "pip install" in done.stderr
+    assert "svg.path" in done.stderr

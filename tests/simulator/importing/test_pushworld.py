@@ -157,6 +157,7 @@ def drawn_puzzles(draw: st.DrawFn) -> str:
     return "\n".join(" ".join(cells[i, j] for i in range(columns)) for j in range(rows))
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(text=drawn_puzzles(), scale=st.sampled_from([1, 3]))
 def test_drawn_puzzles_are_imported_cell_by_cell(text: str, scale: int, tmp_path: Path) -> None:

@@ -173,6 +173,18 @@ def test_the_assignment_is_the_cheapest_of_all(cost: list[list[int]]) -> None:
     assert sum(rows[row][column] for column, row in owner.items()) == least
 
 
+LEVELS = ["#####\n#@$.#\n#####\n", "######\n#@ $.#\n######\n", "#######\n#@  $.#\n#######\n"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("line", ["7", "#7", "*****", "-----", "# Level one", "## a heading, easy", "; 7", "Level 7"])
+def test_what_stands_between_levels_is_no_row(line: str, tmp_path: Path) -> None:
+    text = f"{line}\n" + "".join(f"{level}{line}\n" for level in LEVELS)
+    for number, level in enumerate(LEVELS, 1):
+        plain = imported(level, tmp_path / "a", "--force").world
+        assert imported(text, tmp_path / "b", "--force", "--level", str(number)).world == plain
+
+
 @st.composite
 def drawn_levels(draw: st.DrawFn) -> str:
     """Draw a level within walls."""
@@ -185,6 +197,7 @@ def drawn_levels(draw: st.DrawFn) -> str:
     return "\n".join([wall, *(f"#{''.join(row)}#" for row in cells), wall]) + "\n"
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(text=drawn_levels(), coded=st.booleans())
 def test_drawn_levels_are_imported_cell_by_cell(text: str, coded: bool, tmp_path: Path) -> None:

@@ -17,8 +17,8 @@ from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from utak.simulator.cli.main import main
 from utak.simulator.repl.commands import PROMPT_COMMANDS
-from utak.simulator.repl.dialogue import Dialogue
-from utak.simulator.repl.explaining import Explainer
+from utak.simulator.repl.dialogue import Dialogue, PromptCommand
+from utak.simulator.repl.explaining import asked
 from utak.simulator.repl.printer import Printer
 from utak.simulator.repl.statements import StatementBuffer
 from utak.simulator.run.story import open_story
@@ -154,6 +154,7 @@ def test_the_plan_is_the_next_command(dialogue: Dialogue, capsys: pytest.Capture
     assert "why:1:1-9: error: this is not believed" in talk(dialogue, capsys, "why node(o99).")[1]
 
 
+@pytest.mark.long
 def test_assumptions_count_from_their_step_on(dialogue: Dialogue, capsys: pytest.CaptureFixture[str]) -> None:
     talk(dialogue, capsys, "goto 1")
     out, _ = talk(dialogue, capsys, "assume shape(o1, disc, 77).")
@@ -196,6 +197,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.long
 def test_what_cannot_be_assumed_or_wanted_changes_nothing(
     dialogue: Dialogue, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -208,6 +210,7 @@ def test_what_cannot_be_assumed_or_wanted_changes_nothing(
     assert talk(dialogue, capsys, "run")[0].endswith("done after 2 steps: at(utak,x) holds\n")
 
 
+@pytest.mark.long
 def test_other_goals_are_pursued(dialogue: Dialogue, capsys: pytest.CaptureFixture[str]) -> None:
     talk(dialogue, capsys, "run")
     out, _ = talk(dialogue, capsys, "goal")
@@ -241,6 +244,7 @@ def test_a_saved_episode_is_that_of_a_run(
         assert talk(dialogue_of(episode, engine), capsys, bad)[1]
 
 
+@pytest.mark.long
 def test_a_changed_run_says_so_and_can_be_gone_on_from(
     scenario: Path, episode: Path, engine: QueryEngine, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -278,7 +282,7 @@ def test_an_episode_of_another_world_is_not_repeated(
     assert not dialogue.story.changes
     rows[0]["options"]["kb"] = ["0" * 64]
     path.write_text("".join(json.dumps(row) + "\n" for row in rows))
-    assert "must be given again with --kb" in talk(dialogue_of(path, engine), capsys, "assume door(d9).")[1]
+    assert "name its rules with --kb FILE" in talk(dialogue_of(path, engine), capsys, "assume door(d9).")[1]
 
 
 DAMAGED_HEADERS = [
@@ -328,12 +332,15 @@ def test_a_robot_that_takes_no_changes_says_so(
     assert talk(dialogue, capsys, "assume door(d9).", "?- door(d9).")[0].endswith("yes\n")  # queries alone
 
 
-def test_explanations_are_a_table(episode: Path, engine: QueryEngine, capsys: pytest.CaptureFixture[str]) -> None:
-    def explain(story: object, rest: str, depth: str) -> str:
-        return f"{rest} {depth}"
+def test_the_table_of_commands_can_be_another_one(
+    episode: Path, engine: QueryEngine, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def explain(dialogue: Dialogue, rest: str) -> None:
+        dialogue.printer.say(" ".join(asked(rest)))
 
-    explainers = {"whynot": Explainer("whynot FACT.", "what would have to be otherwise", explain)}
-    dialogue = Dialogue(open_story(episode, Settings()), engine, Printer(), PROMPT_COMMANDS, explainers)
+    commands = {key: one for key, one in PROMPT_COMMANDS.items() if key != "why"}
+    commands["whynot"] = PromptCommand("whynot FACT.", "what would have to be otherwise", explain)
+    dialogue = Dialogue(open_story(episode, Settings()), engine, Printer(), commands)
     assert talk(dialogue, capsys, "whynot long shape(o1,", "square, 9).")[0] == "shape(o1,\nsquare, 9) long\n"
     assert "what would have to be otherwise" in talk(dialogue, capsys, "help whynot")[0]
     assert "unknown command why" in talk(dialogue, capsys, "why x")[1]

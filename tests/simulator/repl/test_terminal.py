@@ -139,6 +139,7 @@ def test_a_conversation_at_a_terminal(terminal: Terminal, tmp_path: Path) -> Non
     assert (tmp_path / "state" / "utak" / "history").stat().st_mode & 0o077 == 0
 
 
+@pytest.mark.long
 def test_history_is_that_of_earlier_conversations(terminal: Terminal, tmp_path: Path) -> None:
     terminal.until("utak 0>")
     terminal.type("help since\r")
@@ -154,6 +155,7 @@ def test_history_is_that_of_earlier_conversations(terminal: Terminal, tmp_path: 
     os.close(again.handle)
 
 
+@pytest.mark.long
 def test_an_answer_that_goes_elsewhere_has_no_prompt_in_it(tmp_path: Path) -> None:
     """Without a terminal for the answers, the prompt is printed on the standard error."""
     for name, text in NEW_SCENARIO_FILES.items():

@@ -8,6 +8,7 @@ from typing import Any
 
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import Episode, read_episode
+from utak.simulator.episode.schema import accepts
 from utak.simulator.replay.page import inflated
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -54,6 +55,9 @@ def hostile(episode: Episode) -> Episode:
         line["belief"]["facts"] += ['shape(o1,"\\"),(",7).', "plan(x,y).", "segment(o1,0,1,2,3,4,5).", "door(((((((("]
         line["belief"]["facts"][-1] = "door((((((((a))))))))."
         for key in keys:
+            before = line["belief"]
             if chance.random() < 0.5:
-                line["belief"][key] = chance.choice(odd)
+                line["belief"] = before | {key: chance.choice(odd)}
+            if not accepts("step", line):  # reading refuses it
+                line["belief"] = before
     return Episode(header, tuple(steps), None)

@@ -32,6 +32,7 @@ def write(folder: Path, episode: Episode) -> str:
     return str(path)
 
 
+@pytest.mark.long
 def test_a_page_is_written_and_no_other_file_is_overwritten(
     carried: tuple[Path, Episode], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -47,6 +48,7 @@ def test_a_page_is_written_and_no_other_file_is_overwritten(
     assert other.read_text(encoding="utf-8") == written
 
 
+@pytest.mark.long
 def test_run_writes_the_page_that_its_log_gives(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log, page, again = (tmp_path / name for name in ("go_northeast.jsonl", "a.html", "b.html"))
     scenario = str(ROOT / "examples" / "go_northeast")
@@ -168,7 +170,7 @@ def test_watch_draws_in_place_where_the_table_has_room(
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
     monkeypatch.setenv("TERM", "xterm")
     watch = TableWatch()
-    table = SimpleNamespace(world=read_world(ROOT / "examples" / "go_to_square"), polygons={}, utak=(5.5, 5.5))
+    table = SimpleNamespace(now=read_world(ROOT / "examples" / "go_to_square").moved({}, (5.5, 5.5)))
     with os.fdopen(terminal, "w") as stream, redirect_stderr(GuardedStream(stream, "the terminal", False)):
         for number in (0, 1, 1, 2):
             line = {"step": number, "action": None, "why": "because " * 20 + "\x1b[2J"}
@@ -179,7 +181,7 @@ def test_watch_draws_in_place_where_the_table_has_room(
             parts.append(part)
     os.close(ours)
     seen = b"".join(parts).decode()
-    height = table.world.height + 2
+    height = table.now.height + 2
     assert seen.count("the true table") == 3
     assert seen.count(f"\x1b[{height}F\x1b[J") == (2 if in_place else 0)
     assert "\x1b[2J" not in seen

@@ -10,8 +10,7 @@ import pytest
 import utak
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import encode, read_episode
-from utak.simulator.run.live_story import LiveStory
-from utak.simulator.run.recorded_story import WORLD_KEYS
+from utak.simulator.run.story import WORLD_KEYS, live_story
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
 
@@ -95,6 +94,7 @@ def test_a_fork_is_resumed_and_forked_again_without_the_first_episode(recorded: 
     assert lines(recorded / "fork.jsonl")[1:] == lines(recorded / "first.jsonl")[1:]
 
 
+@pytest.mark.long
 def test_the_limit_of_commands_can_be_raised(recorded: Path) -> None:
     short = recorded / "short.jsonl"
     assert main(["run", str(recorded / "scene"), "--log", str(short), "--max-steps", "3"]) == 75
@@ -103,6 +103,7 @@ def test_the_limit_of_commands_can_be_raised(recorded: Path) -> None:
     assert lines(recorded / "fork.jsonl")[1:] == lines(recorded / "first.jsonl")[1:]
 
 
+@pytest.mark.long
 def test_rules_of_the_recorded_run_are_given_again_or_left_behind(
     recorded: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -132,6 +133,7 @@ def test_rules_of_the_recorded_run_are_given_again_or_left_behind(
     assert discs == [True, False, False, False]  # the impression of step 1 is interpreted without the rules
 
 
+@pytest.mark.long
 def test_prompt_fork_and_python_change_a_run_alike(recorded: Path, tmp_path: Path) -> None:
     """A goal and a rule from step 2 on give the same lines from there, in whatever way they are given."""
     rule = "shape(o1, disc, 90) :- full_squares(o1, N), N > 3."
@@ -139,7 +141,7 @@ def test_prompt_fork_and_python_change_a_run_alike(recorded: Path, tmp_path: Pat
     scene = with_goal(recorded, "home", "at(utak, start).")
     want = None
     for kind, text, more in (("goal", "at(utak, start).", ()), ("assume", rule, ("--kb", str(tmp_path / "rule.lp")))):
-        story = LiveStory(read_scenario(recorded / "scene"), Settings())
+        story = live_story(read_scenario(recorded / "scene"), Settings())
         while story.at < 2:
             assert story.advance()
         story.change(kind, text)
@@ -157,6 +159,7 @@ def test_prompt_fork_and_python_change_a_run_alike(recorded: Path, tmp_path: Pat
             assert run.fork(goal=text).finish().record.steps == tuple(story.lines)
 
 
+@pytest.mark.long
 def test_stages_of_tasks_that_are_attained_stay_so_when_rules_change(recorded: Path, tmp_path: Path) -> None:
     """Other rules or another path-finder do not make the robot do again what it has done."""
     scene = with_goal(recorded, "tour", "first(at(utak, corner(southwest))).\nthen(at(utak, corner(southeast))).\n")

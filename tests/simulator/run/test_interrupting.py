@@ -21,8 +21,7 @@ from utak.simulator.repl.commands import PROMPT_COMMANDS
 from utak.simulator.repl.dialogue import Dialogue
 from utak.simulator.repl.printer import Printer
 from utak.simulator.run.interrupts import defer_interrupt
-from utak.simulator.run.live_story import LiveStory
-from utak.simulator.run.story import open_story
+from utak.simulator.run.story import Story, open_story
 from utak.simulator.scenario.settings import Settings
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -43,7 +42,7 @@ def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
     scripted_robot.install()
 
 
-def finished(story: LiveStory) -> list[Any]:
+def finished(story: Story) -> list[Any]:
     """Return every line of a story with its picture, and its result."""
     lines = [(story.line, story.picture())]
     while story.advance():
@@ -73,6 +72,7 @@ def interrupted_at(event: int) -> Iterator[None]:
         sys.settrace(before)
 
 
+@pytest.mark.long
 def test_a_step_interrupted_anywhere_did_not_happen(tmp_path: Path, scripted: None) -> None:
     folder, settings = write_scene(tmp_path / "s", 4), Settings(noise=0.05, max_steps=8)
     whole = finished(open_story(folder, settings))
@@ -94,6 +94,7 @@ def test_a_step_interrupted_anywhere_did_not_happen(tmp_path: Path, scripted: No
         assert [*seen, story.result] == whole
 
 
+@pytest.mark.long
 def test_the_robot_continues_unchanged_after_an_interrupted_step(tmp_path: Path) -> None:
     for name, text in NEW_SCENARIO_FILES.items():
         (tmp_path / name).write_text(text)
@@ -209,6 +210,7 @@ sys.exit(main())
         assert "bug" not in said
 
 
+@pytest.mark.long
 def test_a_background_job_ignores_ctrl_c(tmp_path: Path) -> None:
     def ignore() -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)

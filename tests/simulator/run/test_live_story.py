@@ -13,9 +13,9 @@ from utak.kb.language.diagnostics import BadInputError
 from utak.kb.task.task import Task
 from utak.simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from utak.simulator.episode.episode import EpisodeLog, encode
-from utak.simulator.run.live_story import MAX_KEPT_SESSIONS, LiveStory
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import CannotAdoptError, Session
+from utak.simulator.run.story import MAX_KEPT_SESSIONS, live_story
 from utak.simulator.scenario.scenario import Scenario, read_scenario
 from utak.simulator.scenario.settings import Settings
 
@@ -65,7 +65,7 @@ def lines_of_run(scenario: Scenario, settings: Settings, make: Any) -> list[str]
 def test_any_way_back_and_forth_shows_the_lines_of_the_run(scene: Scenario, make: Any) -> None:
     settings = Settings(noise=0.05, seed=5)
     whole = lines_of_run(scene, settings, make)
-    story, draw = LiveStory(scene, settings, make), random.Random(2)
+    story, draw = live_story(scene, settings, make), random.Random(2)
     assert not story.is_awake
     for _ in range(80):
         if draw.random() < 0.6:
@@ -80,6 +80,7 @@ def test_any_way_back_and_forth_shows_the_lines_of_the_run(scene: Scenario, make
             story.go_to(bad)
 
 
+@pytest.mark.long
 def test_a_fork_of_the_real_robot_does_what_the_run_does() -> None:
     scenario = read_scenario(ROOT / "examples" / "push_square_next_room")
     settings = Settings(noise=0.01, seed=2, max_steps=5)
@@ -109,8 +110,9 @@ def test_a_fork_writes_no_episode(scene: Scenario, tmp_path: Path) -> None:
         assert path.read_bytes() != before
 
 
+@pytest.mark.long
 def test_a_change_forks_the_run_and_is_repeated_with_it(small: Scenario) -> None:
-    story = LiveStory(small, Settings())
+    story = live_story(small, Settings())
     while story.advance():
         pass
     plain = [encode(line) for line in story.lines]
@@ -132,11 +134,11 @@ def test_a_change_forks_the_run_and_is_repeated_with_it(small: Scenario) -> None
     assert encode(again.line) == last
     story.go_to(0)
     assert story.header.get("changes") is None
-    assert not story.conditions.is_changed_task
+    assert story.conditions.scenario is small
 
 
 def test_a_change_that_fails_changes_nothing(small: Scenario) -> None:
-    story = LiveStory(small, Settings())
+    story = live_story(small, Settings())
     story.advance()
     before = story._moment
     for kind, text in (("assume", "shape(o1, sqare, 9)."), ("retract", "door(d1)."), ("goal", "at(utak, nowhere).")):
@@ -149,7 +151,7 @@ def test_a_change_that_fails_changes_nothing(small: Scenario) -> None:
 
 
 def test_rules_that_derive_nonsense_later_are_told_of_as_typed(small: Scenario) -> None:
-    story = LiveStory(small, Settings())
+    story = live_story(small, Settings())
     rule = "shape(o1, square, C) :- full_squares(o1, N), C = 200 + N."
     with pytest.raises(BadInputError, match=r"^assume:1:1-1: error: these rules derive shape\(o1,square,2\d+\)"):
         story.change("assume", rule)
@@ -157,7 +159,7 @@ def test_rules_that_derive_nonsense_later_are_told_of_as_typed(small: Scenario) 
 
 
 def test_a_robot_without_changes_refuses_them(scene: Scenario) -> None:
-    story = LiveStory(scene, Settings(), scripted)
+    story = live_story(scene, Settings(), scripted)
     with pytest.raises(CannotAdoptError):
         story.change("assume", "shape(o1, square, 90).")
     assert story.changes == ()

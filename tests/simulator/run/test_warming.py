@@ -147,6 +147,7 @@ def compiling(**environment: str) -> "subprocess.CompletedProcess[str]":
     return subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True, env=settings)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_written(monkeypatch, tmp_path) -> None:
     # A copy: kernels that the installation keeps already would be read.
@@ -162,6 +163,7 @@ def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_wr
     assert list((tmp_path / "numba").rglob("funnel.measure_line-*.nbi"))
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 def test_a_message_says_when_no_cache_can_be_written() -> None:
     done = compiling(NUMBA_CACHE_LOCATOR_CLASSES="IPythonCacheLocator")
@@ -169,6 +171,7 @@ def test_a_message_says_when_no_cache_can_be_written() -> None:
     assert done.stdout.split()[1] == "False"
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 def test_a_terminal_shows_the_progress(tmp_path) -> None:
     ours, theirs = pty.openpty()
@@ -184,8 +187,9 @@ def test_a_terminal_shows_the_progress(tmp_path) -> None:
     assert "kernels compiled so far: 1, in " in said
 
 
+@pytest.mark.long
 def test_kernels_of_skeletons_that_are_rings_are_warmed() -> None:
-    """Exercises and examples once compiled seven kernels that `utak warm` had left out."""
+    """Exercises and examples once compiled kernels that `utak warm` had left out."""
     code = """
 import sys
 from utak.simulator.run import warming
@@ -194,7 +198,7 @@ sys.setprofile(lambda frame, event, _: seen.add(frame.f_code.co_name) if event =
 for use in warming.RARE_USES[-1:]:
     use()
 sys.setprofile(None)
-left_out = "first_on_ring halt_rings walk_rings fill_adjacency fill_arrays fill_nodes fill_points"
+left_out = "first_on_ring halt_rings walk_rings fill_arrays fill_nodes fill_points"
 print(sorted(set(left_out.split()) - seen))
 """
     environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)}

@@ -86,6 +86,7 @@ BAD = {
     "unmoved(block).": "there are p1, t1",
     f"before({SOUTH}, {NORTH.replace('utak', 't2')}).": "the world has no object t2",
     f"before({SOUTH}, within(3)).": "unknown predicate within/1",
+    'rules("own.lp").': "rules belongs in trial.lp",
     f"before(utak, {NORTH}).": "unknown predicate utak/0",
     "unmoved(utak).": "the world has no object utak",
     "circles(t1, p1).": "unknown walker t1",

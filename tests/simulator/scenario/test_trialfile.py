@@ -5,12 +5,17 @@ from pathlib import Path
 import pytest
 
 from utak.kb.language.diagnostics import BadInputError
-from utak.simulator.scenario.trialfile import answers_as_wanted, read_trial_plan
+from utak.kb.language.vocabulary import PREDICATES_BY_FILE
+from utak.simulator.scenario.trialfile import TRIAL_VOCABULARY, answers_as_wanted, read_trial_plan
 
 
 def written(folder: Path, text: str) -> Path:
     (folder / "trial.lp").write_text(text)
     return folder / "trial.lp"
+
+
+def test_hints_know_what_belongs_in_this_file() -> None:
+    assert set(PREDICATES_BY_FILE["trial.lp"]) == set(TRIAL_VOCABULARY)
 
 
 def test_a_plan_has_options_rules_and_questions(tmp_path: Path) -> None:
@@ -44,7 +49,7 @@ BAD = {
     'asks("p", row).': "unknown answer row",
     'asks("p", yes). weight(asks("p", no), 1).': 'asks("p",no) is weighed, but not asked',
     'asks("p", yes). weight(asks("p", yes), 1). weight(asks("p", yes), 2).': "stated twice",
-    "within(3).": "unknown predicate within/1",
+    "within(3).": "within belongs in expect.lp",
 }
 
 

@@ -1,4 +1,4 @@
-"""The plan of a sweep: ranges of seeds, names of scenarios, the order of runs, and what the header tells apart."""
+"""The plan of a sweep: ranges of seeds, names of scenarios, the order of runs, shards, and what names a run."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from utak.simulator.scenario.settings import Settings
 from utak.simulator.sweep.contents import ScenarioContents, names_of, read_contents, written
-from utak.simulator.sweep.plan import SweepPlan, SweepRun, parse_seeds, written_seeds
+from utak.simulator.sweep.plan import SweepPlan, SweepRun, parse_seeds
 
 ONE = ScenarioContents("one", (("world.txt", "U"), ("goal.lp", "x")))
 TWO = ScenarioContents("two", (("world.txt", "U."), ("goal.lp", "x")))
@@ -17,10 +17,9 @@ PLAN = SweepPlan((ONE, TWO), ((3, 5), (9, 10)), (0.1, 0.0))
 
 
 @given(st.lists(st.integers(0, 2**63 - 1), min_size=1, max_size=6, unique=True))
-def test_seeds_are_read_as_written(seeds: list[int]) -> None:
+def test_seeds_are_read_in_their_order(seeds: list[int]) -> None:
     ranges = parse_seeds(",".join(map(str, seeds)))
     assert [seed for first, end in ranges for seed in range(first, end)] == seeds
-    assert parse_seeds(written_seeds(ranges)) == ranges
 
 
 @pytest.mark.parametrize(
@@ -48,27 +47,42 @@ def test_a_task_carries_the_texts_of_its_scenario() -> None:
     task = plan.task(SweepRun("two", 0.1, 9))
     assert task.argument["files"] == [["world.txt", "U."], ["goal.lp", "x"]]
     assert task.argument["rules"] == [["r.lp", "a."]]
-    assert (task.argument["paths"], task.argument["pull"], task.argument["seed"], task.seconds) == ("grid", False, 9, 7)
+    options = task.argument["options"]
+    assert (options["paths"], options["pull"], options["seed"], task.seconds) == ("grid", False, 9, 7)
+
+
+RUN = SweepRun("one", 0.1, 3)
 
 
 @pytest.mark.parametrize(
     "change",
     [
-        {"scenarios": (TWO,)},
         {"scenarios": (ONE._replace(files=(("world.txt", "U"), ("goal.lp", "y"))), TWO)},
-        {"seeds": ((3, 5),)},
-        {"noises": (0.0, 0.1)},
         {"settings": Settings(max_steps=3)},
+        {"settings": Settings(paths="grid")},
+        {"settings": Settings(pull=False)},
         {"rules": (("r.lp", "a."),)},
         {"seconds": 1.0},
     ],
 )
-def test_the_header_tells_sweeps_apart(change: dict[str, object]) -> None:
-    assert replace(PLAN, **change).header != PLAN.header  # type: ignore[arg-type]
+def test_the_name_of_a_run_tells_what_decides_its_result(change: dict[str, object]) -> None:
+    assert replace(PLAN, **change).run_id(RUN) != PLAN.run_id(RUN)  # type: ignore[arg-type]
 
 
-def test_the_header_does_not_depend_on_what_has_no_meaning_for_a_sweep() -> None:
-    assert replace(PLAN, settings=Settings(seed=5, noise=0.5, kb_files=("x",))).header == PLAN.header
+def test_the_name_of_a_run_depends_on_nothing_else() -> None:
+    assert len({PLAN.run_id(run) for run in PLAN.runs}) == PLAN.size
+    assert PLAN.run_id(RUN) == PLAN.run_id(RUN)
+    changes = {"settings": Settings(seed=5, noise=0.5, kb_files=("x",)), "seeds": ((3, 4),), "shard": (2, 7)}
+    assert replace(PLAN, scenarios=(ONE,), **changes).run_id(RUN) == PLAN.run_id(RUN)  # type: ignore[arg-type]
+    moved = replace(PLAN, scenarios=(ONE._replace(name="moved"),))
+    assert moved.run_id(RUN._replace(scenario="moved")) == PLAN.run_id(RUN)
+
+
+@pytest.mark.parametrize("number", [1, 2, 5, 50])
+def test_shards_are_the_whole(number: int) -> None:
+    shards = [replace(PLAN, shard=(which, number)).runs for which in range(1, number + 1)]
+    assert sorted(run for shard in shards for run in shard) == sorted(PLAN.runs)
+    assert max(map(len, shards)) - min(map(len, shards)) <= 1
 
 
 def test_names_are_as_short_as_they_can_be() -> None:

@@ -13,6 +13,7 @@ from utak.simulator.sweep.picture import log_ticks, sweep_picture
 from utak.simulator.sweep.results import ResultRow
 from utak.simulator.sweep.summary import counts_of, table_of, total_of, upper_percentile, wilson_interval
 
+OPTIONS = {"paths": "grid", "max_steps": 9, "pull": True, "utak": "0.2.0", "code": "0a", "seconds": 0.5}
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -20,16 +21,32 @@ def ended(scenario: str, noise: float, seed: int, steps: int, believed: bool, ac
     """Return the row of a run with a result."""
     result = {"believed": believed, "achieved": achieved, "verdict": "done", "reason": "", "steps": steps, "unmet": []}
     passed = None if achieved is None else believed and achieved
-    row = {"scenario": scenario, "seed": seed, "noise": noise, "result": result, "passed": passed, "failed": None}
-    assert problem_of(row) == ""
+    row = {
+        "run": "0" * 16,
+        "scenario": scenario,
+        "seed": seed,
+        "noise": noise,
+        "result": result,
+        "passed": passed,
+        "failed": None,
+    }
+    assert problem_of(row | OPTIONS) == ""
     return row
 
 
 def failed(scenario: str, noise: float, seed: int, how: str) -> ResultRow:
     """Return the row of a run without a result."""
     failure = {"how": how, "reason": "a reason"}
-    row = {"scenario": scenario, "seed": seed, "noise": noise, "result": None, "passed": False, "failed": failure}
-    assert problem_of(row) == ""
+    row = {
+        "run": "0" * 16,
+        "scenario": scenario,
+        "seed": seed,
+        "noise": noise,
+        "result": None,
+        "passed": False,
+        "failed": failure,
+    }
+    assert problem_of(row | OPTIONS) == ""
     return row
 
 
@@ -102,7 +119,7 @@ def test_the_table_shows_counts_and_names_what_to_look_at() -> None:
     ],
 )
 def test_damaged_rows_are_noticed(damage: ResultRow) -> None:
-    assert problem_of({**ROWS[0], **damage})
+    assert problem_of({**ROWS[0], **OPTIONS, **damage})
 
 
 def marks(picture: str, kind: str) -> dict[str, float]:

@@ -166,6 +166,7 @@ def test_every_command_with_json_is_tried() -> None:
     assert printing_commands() == set(PRINTED)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("command", PRINTED)
 def test_json_is_strict(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

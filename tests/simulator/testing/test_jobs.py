@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from utak.simulator.cli.main import main
-from utak.simulator.testing.handle import WorkerEndedError, WorkerHandle
+from utak.simulator.sweep.executors.task_process import TaskProcess
+from utak.simulator.sweep.executors.tasks import TRYING_FUNCTION, WorkerTask, bug_of
 
 EXERCISES = Path(__file__).resolve().parents[3] / "docs" / "exercises"
 
@@ -33,16 +34,16 @@ def test_several_jobs_give_the_outcomes_of_one(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_a_process_that_ends_is_reported_and_another_one_is_started() -> None:
-    handle = WorkerHandle()
+    process = TaskProcess()
     try:
-        with pytest.raises(WorkerEndedError, match="ended with exit code"):
-            handle.ask({"nonsense": 1})  # no wish: an error that the process does not survive
-        record = handle.ask({"folder": "no/where", "root": "no/where", "given": {}})
+        ended = bug_of(process.run(WorkerTask("os:_exit", 3)))
+        assert ended == "this is a bug of ours: the process that runs the scenario ended with exit code 3"
+        record = process.run(WorkerTask(TRYING_FUNCTION, {"folder": "no/where", "root": "no/where", "given": {}})).value
         assert (record["outcome"], record["exit_code"]) == ("absent", 66)
         assert "no such folder" in record["report"]
         assert "repeat it: utak test no/where" in record["report"]
     finally:
-        handle.close()
+        process.close()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are those of POSIX systems")
@@ -78,6 +79,6 @@ def children(parent: int) -> list[int]:
 def is_worker(process: int) -> bool:
     """Return whether a process tries scenarios; False when it has ended."""
     try:
-        return b"testing.worker" in Path(f"/proc/{process}/cmdline").read_bytes()
+        return b"executors.worker" in Path(f"/proc/{process}/cmdline").read_bytes()
     except OSError:
         return False

@@ -51,6 +51,7 @@ def test_the_plugin_is_switched_off_in_three_ways(pytester: pytest.Pytester) -> 
     assert collected(pytester) == mine
 
 
+@pytest.mark.long
 def test_reports_say_what_was_expected_what_came_and_how_to_repeat_it(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -88,6 +89,7 @@ def test_options_are_checked(option: str, pytester: pytest.Pytester) -> None:
     assert found.ret == pytest.ExitCode.USAGE_ERROR
 
 
+@pytest.mark.long
 def test_an_installed_plugin_is_found_and_leaves_packages_of_the_users_alone(tmp_path: Path) -> None:
     """The folder `site` is as an installation leaves it; the project has packages under the names of ours."""
     site, here = tmp_path / "site", tmp_path / "here"

@@ -162,6 +162,7 @@ def depth(world: Tabletop) -> float:
     return max(a.intersection(b).area for n, a in enumerate(shapes) for b in shapes[:n])
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 359), st.lists(command, max_size=12), st.sampled_from([0.0, 0.05]))
 def test_things_never_overlap_after_motions(heading: int, commands: list[Any], noise: float) -> None:
@@ -190,6 +191,7 @@ def play(world: Tabletop, commands: list[Any]) -> None:
             world.grasp(direction)
 
 
+@pytest.mark.long
 @settings(max_examples=80, deadline=None)
 @given(st.sampled_from([0, 90, 33]), st.lists(carrying, max_size=10), st.lists(carrying, max_size=4))
 def test_a_table_that_was_played_on_is_as_a_new_one(heading: int, commands: list[Any], further: list[Any]) -> None:
@@ -249,6 +251,7 @@ def test_same_seed_same_world(commands: list[Any], seed: int) -> None:
     assert first == second
 
 
+@pytest.mark.long
 def test_noise_disturbs_distance_direction_and_grasp() -> None:
     ends, slips = [], 0
     for seed in range(300):

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate
 
+from utak.geometry.counts.retina import FIELDS
 from utak.simulator.world.physics import Tabletop
-from utak.simulator.world.senses import NEIGHBOUR_OFFSETS, Senses, retina_fields
-from utak.simulator.world.table import Table
+from utak.simulator.world.senses import NEIGHBOUR_OFFSETS
 from utak.simulator.world.world import Thing, World
 
 
@@ -21,7 +21,7 @@ def room(things: list[Thing], heading: int = 0, utak: tuple[float, float] = (8.5
 
 
 def test_the_fields_tile_the_retina() -> None:
-    fields = retina_fields()
+    fields = FIELDS
     assert [side for _, _, side in fields] == [1] * 64 + [2] * 48 + [4] * 48
     squares = [(e + i, n + j) for e, n, side in fields for i in range(side) for j in range(side)]
     assert sorted(squares) == [(e, n) for e in range(-16, 16) for n in range(-16, 16)]
@@ -44,7 +44,7 @@ def slow_impression(world: World) -> tuple[list[int], list[str | None]]:
         return next((colour for shape, colour in shapes if shape.intersection(square).area > 1e-9), None)
 
     levels = []
-    for east, north, side in retina_fields():
+    for east, north, side in FIELDS:
         offsets = [(east + i, north + j) for i in range(side) for j in range(side)]
         count = sum(offset == (0, 0) or seen(*offset) is not None for offset in offsets)
         levels.append(math.floor(Fraction(7 * count, side * side) + Fraction(1, 2)))
@@ -75,7 +75,7 @@ def test_touch_turns_with_the_heading(heading: int, felt: int) -> None:
 
 def test_the_first_by_name_is_felt_where_two_share_a_square() -> None:
     things = [Thing("a", "g", shapely.box(9.5, 8, 10, 9)), Thing("z", "c", shapely.box(9, 8, 9.5, 9))]
-    assert Senses(0).touch(Table(room(things)), (8.5, 8.5))[2] == "g"
+    assert Tabletop(room(things)).look()[1][2] == "g"
 
 
 def test_sensing_leaves_the_world_equal() -> None:

@@ -186,17 +186,6 @@ def test_actions_stand_for_commands() -> None:
             discrete.command(number)
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_a_batch_of_actions_is_the_same_actions_one_by_one(form: str) -> None:
-    from gymnasium.vector.utils import batch_space, iterate
-
-    found = action_form(form, 3.0)
-    space = batch_space(found.space, 9)
-    space.seed(2)
-    batch = space.sample()
-    assert found.commands(batch) == [found.command(one) for one in iterate(space, batch)]
-
-
 def test_the_table_is_drawn_as_text_and_as_an_image() -> None:
     env = make(actions="discrete", render_mode="ansi")
     env.reset()
@@ -214,33 +203,6 @@ def test_the_table_is_drawn_as_text_and_as_an_image() -> None:
     assert make().unwrapped.render() is None
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_many_tables_together_are_the_same_tables_one_by_one(form: str) -> None:
-    options = {"scenario": [ROOM, EXAMPLES / "push_l_next_room"], "actions": form, "noise": 0.05, "max_steps": 9}
-    together = gymnasium.make_vec("utak/Tabletop-v0", num_envs=3, **options)
-    one_by_one = gymnasium.make_vec("utak/Tabletop-v0", num_envs=3, vectorization_mode="sync", **options)
-    assert type(together).__name__ == "TabletopVectorEnv"
-    assert together.action_space == one_by_one.action_space
-    assert together.observation_space == one_by_one.observation_space
-    together.action_space.seed(6)
-    results = [envs.reset(seed=[3, 4, 5]) for envs in (together, one_by_one)]
-    ended = 0
-    for _ in range(40):
-        (first, *mine), (second, *theirs) = results
-        for key in ("retina", "touch"):
-            assert np.array_equal(first[key], second[key])
-        assert all(np.array_equal(a, b) for a, b in zip(mine[:-1], theirs[:-1], strict=True))
-        assert set(mine[-1]) == set(theirs[-1])
-        assert all(np.array_equal(mine[-1][key], theirs[-1][key]) for key in mine[-1])
-        assert together.observation_space.contains(first)
-        action = together.action_space.sample()
-        results = [envs.step(action) for envs in (together, one_by_one)]
-        ended += int(results[0][3].sum())
-    assert ended > 6
-    one_by_one.close()
-    together.close()
-
-
 def test_one_seed_for_many_tables_is_counted_on() -> None:
     tables = [gymnasium.make_vec("utak/Tabletop-v0", num_envs=3, scenario=ROOM, noise=0.2) for _ in range(2)]
     for envs, seed in zip(tables, (7, [7, 8, 9]), strict=True):
@@ -250,8 +212,6 @@ def test_one_seed_for_many_tables_is_counted_on() -> None:
         action = tables[0].action_space.sample()
         found = [envs.step(action)[0]["retina"] for envs in tables]
         assert np.array_equal(*found)
-    with pytest.raises(ValueError, match="2 seeds are given for 3 tables"):
-        tables[0].reset(seed=[1, 2])
 
 
 def test_many_tables_are_drawn() -> None:

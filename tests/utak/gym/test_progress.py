@@ -41,6 +41,7 @@ command = st.one_of(
 ROUND = [("move", x, y) for x, y in ((0, 3), (4, 0), (0, -6), (-6, 0), (0, 4), (2, 3))]
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(st.lists(command, max_size=10) | st.just(ROUND))
 def test_each_expectation_is_met_when_the_whole_track_meets_it(commands: list[Any]) -> None:

@@ -7,9 +7,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from utak.kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from utak.simulator.scenario.untrusted import add_untrusted_option, refuse_links
+from utak.kb.language.diagnostics import BadInputError, CannotOpenError
+from utak.kb.reasoning.user_rules import read_tested_rules
+from utak.kb.task.task import read_start, read_task
+from utak.simulator.scenario.cautions import cautions
+from utak.simulator.scenario.expectation import read_expectations
+from utak.simulator.scenario.picture import read_picture
+from utak.simulator.scenario.scenario import read_any_world, read_scenario
+from utak.simulator.scenario.trialfile import read_trial_plan
+from utak.simulator.scenario.untrusted import refuse_links
+from utak.simulator.scenario.worldfile import read_world
 from utak.simulator.terminal import exits
+from utak.simulator.terminal.outcome import outcome_of
 
 # The words of the summary, by exit code.
 OUTCOME_WORDS = {
@@ -20,24 +29,16 @@ OUTCOME_WORDS = {
 }
 
 
-def add(parts: Any) -> None:
-    """Declare the subcommand."""
-    part = parts.add_parser("check", help="check scenarios or single files of them")
-    what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
-    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
-    add_untrusted_option(part)
-    part.set_defaults(execute=execute)
-
-
 def execute(options: argparse.Namespace) -> int:
     """Check every path, whatever is wrong with the others; return the most severe exit code."""
-    from utak.simulator.terminal.outcome import attempt
-
     codes = []
     for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:
-        codes.append(attempt(_check, path, root, options))
-        if codes[-1] == exits.SUCCESS:
+        code, message = outcome_of(_check, path, root, options)
+        codes.append(code)
+        if code == exits.SUCCESS:
             print(f"{path}: ok")
+        else:
+            print(message, file=sys.stderr)
     if len(codes) > 1:
         counts = Counter(codes)
         print(
@@ -59,9 +60,6 @@ def _parts(path: Path) -> list[Path]:
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     """Check a scenario folder or one file; the file's name tells what it must hold."""
-    from utak.simulator.scenario.cautions import cautions
-    from utak.simulator.scenario.scenario import read_scenario
-
     refuse_links(options, path, root)
     if path.is_dir():
         scenario = read_scenario(path)
@@ -70,51 +68,31 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
         for caution in cautions(path, scenario):
             print(str(caution).replace(": error: ", ": warning: ", 1), file=sys.stderr)
         return exits.SUCCESS
-    check = _checks().get(path.name)
-    if check is None:
-        if not path.exists():
-            raise CannotOpenError(str(path), "no such file or folder")
-        if path.suffix == ".lp":
-            check = _rules
-        else:
-            what = f"{path.name} is neither a file of a scenario nor one of rules"
-            hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
-            raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), what, hint=hint)])
-    check(path)
+    if path.name in FILE_CHECKS:
+        FILE_CHECKS[path.name](path)
+    elif not path.exists():
+        raise CannotOpenError(str(path), "no such file or folder")
+    elif path.suffix == ".lp":
+        read_tested_rules([path])
+    else:
+        what = f"{path.name} is neither a file of a scenario nor one of rules"
+        hint = f"a scenario's files are {', '.join(sorted(FILE_CHECKS))}; files of rules end in .lp"
+        raise BadInputError.at(str(path), what, hint)
     return exits.SUCCESS
-
-
-def _rules(path: Path) -> None:
-    """Check a file of rules, as for --kb."""
-    from utak.kb.reasoning.user_rules import read_tested_rules
-
-    read_tested_rules([path])
 
 
 def _plan(path: Path) -> None:
     """Check a trial.lp, and the files of rules that it names."""
-    from utak.simulator.scenario.trialfile import read_trial_plan
-
-    rules = read_trial_plan(path).rules
-    if rules:
-        from utak.kb.reasoning.user_rules import read_tested_rules
-
+    if rules := read_trial_plan(path).rules:
         read_tested_rules(list(rules))
 
 
-def _checks() -> dict[str, Callable[[Path], Any]]:
-    """Return the check for each file of a scenario, by name."""
-    from utak.kb.task.task import read_start, read_task
-    from utak.simulator.scenario.expectation import read_expectations
-    from utak.simulator.scenario.picture import read_picture
-    from utak.simulator.scenario.scenario import read_any_world
-    from utak.simulator.scenario.worldfile import read_world
-
-    return {
-        "world.lp": read_world,
-        "world.txt": read_picture,
-        "start.lp": read_start,
-        "goal.lp": lambda path: read_task(path.parent / "start.lp", path),
-        "expect.lp": lambda path: read_expectations(path, read_any_world(path.parent)),
-        "trial.lp": _plan,
-    }
+# The check for each file of a scenario, by name.
+FILE_CHECKS: dict[str, Callable[[Path], Any]] = {
+    "world.lp": read_world,
+    "world.txt": read_picture,
+    "start.lp": read_start,
+    "goal.lp": lambda path: read_task(path.parent / "start.lp", path),
+    "expect.lp": lambda path: read_expectations(path, read_any_world(path.parent)),
+    "trial.lp": _plan,
+}

@@ -59,6 +59,7 @@ MOTIONS = st.one_of(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(MOTIONS, st.dictionaries(SQUARES, st.floats(-4, 4), max_size=6), st.lists(SQUARES, max_size=2))
 def test_a_motion_may_end_at_every_square_that_is_not_free(

@@ -10,7 +10,14 @@ from shapely.affinity import rotate, translate
 
 from tests.kb.eyes import Occupied, retina, world_of
 from utak.kb.localisation.hypotheses.frames import ObjectPose, Observation
-from utak.kb.localisation.hypotheses.remap import RemapCache, ReplayPrefixes, object_pose, remap, shift_object
+from utak.kb.localisation.hypotheses.remap import (
+    MapReplay,
+    RemapCache,
+    ReplayPrefixes,
+    object_pose,
+    remap,
+    shift_object,
+)
 from utak.kb.objects.held_object import HeldObject, snap_to_grid
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.perception.retina import count_ranges
@@ -162,6 +169,18 @@ def test_a_replay_of_first_observations_can_be_continued(number: int) -> None:
         assert (found.occupancy.logit == at_once.occupancy.logit).all()
         assert found.residual == at_once.residual
         assert found.held_objects["o1"].polygon.equals(at_once.held_objects["o1"].polygon)
+
+
+def test_frames_in_which_observations_fall_on_the_same_squares_share_a_replay() -> None:
+    """The later observations are integrated in the own frame of each, which may lay them to other squares."""
+    ranges = count_ranges(retina(world_of(ROOM), (9, 9)))
+    observations = [Observation(ranges, place) for place in ((0.0, 0.0), (1.0, 0.0), (1.4, 0.0))]
+    alike: dict[tuple[int, bytes], MapReplay] = {}
+    for frame in (Frame(0, CENTRE), Frame(0, (0.8, 0.5))):
+        found = remap(frame, frame, observations, (), ReplayPrefixes(frame, observations, {}, alike).first(2))
+        at_once = remap(frame, frame, observations, ())
+        assert (found.occupancy.state == at_once.occupancy.state).all() and found.residual == at_once.residual
+    assert len(alike) == 1
 
 
 def test_a_replay_that_asks_only_whether_stops_at_the_first_contradiction() -> None:

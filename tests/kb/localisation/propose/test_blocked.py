@@ -58,6 +58,7 @@ def test_the_chances_of_all_ends_sum_to_one(far: float) -> None:
         assert end.contact_squares == {(round(end.place[0]), 0)}
 
 
+@pytest.mark.long
 def test_a_contact_with_an_unseen_wall_is_placed_right() -> None:
     """An unseen wall blocks the walk; a pillar seen before tells how far it came."""
     rows = ["b" * 60, *["b" + "." * 50 + "b" * 9] * 12, "b" * 60]
@@ -71,6 +72,7 @@ def test_a_contact_with_an_unseen_wall_is_placed_right() -> None:
         assert tracker.state.occupancy.state[tracker.state.occupancy.index(49 - begun, 0)] == FREE
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("side", [-1, 1])
 def test_utak_blocked_before_a_pulled_object_observes_from_either_side_of_the_line(side: int) -> None:
     """At the end of a corridor that goes on to the side Utak is between the pulled object and the wall."""

@@ -102,6 +102,7 @@ def first_of(attempts: Iterator[Scene | None]) -> Scene:
     return scene
 
 
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(seeds)
 def test_a_walk_blocked_before_a_grasp_is_reestimated_with_the_object(seed: int) -> None:
@@ -140,14 +141,16 @@ def walked_and_pushed(rng: np.random.Generator) -> Scene | None:
     return surprise, MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), shift, true
 
 
-@settings(max_examples=15, deadline=None)
+@pytest.mark.long
+@settings(max_examples=6, deadline=None)
 @given(seeds)
 def test_a_push_blocked_unnoticed_is_reestimated_with_the_object_in_hand(seed: int) -> None:
     rng = np.random.default_rng(seed)
     assert right(*first_of(pushed_and_walked(rng) for _ in range(300)))
 
 
-@settings(max_examples=15, deadline=None)
+@pytest.mark.long
+@settings(max_examples=6, deadline=None)
 @given(seeds)
 def test_such_a_push_is_reestimated_together_with_the_origin(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -161,6 +164,7 @@ def test_a_push_that_is_not_reestimated_together_with_the_origin() -> None:
     test_such_a_push_is_reestimated_together_with_the_origin.hypothesis.inner_test(1_003_755_125)
 
 
+@pytest.mark.long
 @settings(max_examples=5, deadline=None)
 @given(seeds)
 def test_a_walk_is_not_reestimated_together_with_the_origin(seed: int) -> None:
@@ -178,8 +182,8 @@ def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Scene
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = [shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)]
-    part = Obstacles(walls).first_contact(ContactBody(thing, [origin]), Translate(*way)).fraction
-    alone = Obstacles(walls).first_contact(ContactBody(thing, []), Translate(*way)).fraction
+    part = Obstacles(walls).first_contact(ContactBody(thing, [origin]), Translate(*way))
+    alone = Obstacles(walls).first_contact(ContactBody(thing, []), Translate(*way))
     went = way[0] * part, way[1] * part
     shift = went[0] - way[0], went[1] - way[1]
     there = around(translate(thing, *went), room)

@@ -45,8 +45,8 @@ def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surpr
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = Obstacles([shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)])
-    part = walls.first_contact(ContactBody(thing, [origin]), Translate(*way)).fraction
-    if part in (0.0, 1.0) or part == walls.first_contact(ContactBody(thing, []), Translate(*way)).fraction:
+    part = walls.first_contact(ContactBody(thing, [origin]), Translate(*way))
+    if part in (0.0, 1.0) or part == walls.first_contact(ContactBody(thing, []), Translate(*way)):
         return None
     went = way[0] * part, way[1] * part
     lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))

@@ -41,6 +41,7 @@ def drawn(room: Occupied, deep: int, by: float) -> tuple[Tracker, str]:
     return tracker, found.explanation.how
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("deep", [1, 2, 3])
 @pytest.mark.parametrize("by", [2.0, 4.0])
 def test_an_object_drawn_out_of_a_door_shows_its_true_size(deep: int, by: float) -> None:

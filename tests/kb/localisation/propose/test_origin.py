@@ -32,6 +32,7 @@ def corrected(one: Explanation, observations: list[Observation]) -> list[Observa
     return [*before, newest._replace(place=one.reestimated.newest)]
 
 
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(COARSE_ORIGINS))
 def test_the_true_origin_and_contact_are_among_the_proposals(seed: int, origin: Point) -> None:

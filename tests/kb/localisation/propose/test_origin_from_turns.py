@@ -35,6 +35,7 @@ def turned_until(thing: shapely.Polygon, about: tuple[float, float], post: shape
     return most
 
 
+@pytest.mark.long
 @settings(max_examples=6, deadline=None, derandomize=True)  # one in about a hundred places fails: see below
 @given(within, within, st.sampled_from([(25, 24), (26, 23), (24, 25)]))
 def test_a_blocked_turn_tells_the_origin_and_how_far_it_went(fx: float, fy: float, post_at: tuple[int, int]) -> None:

@@ -178,6 +178,7 @@ def test_why_not_knows_what_a_plan_is(run: Path) -> None:
     assert questions.why_not("held(o1)", 3).because == "it was never in hand up to this step; this is in hand instead"
 
 
+@pytest.mark.long
 def test_another_first_step_is_said_to_cost_more(run: Path) -> None:
     questions = questions_of_episode(read_episode(run / "ep.jsonl"))
     reason = questions.why_not("plan(0,arrive(g2_r1))", 1)
@@ -231,6 +232,7 @@ def test_a_run_in_python_shows_its_plan() -> None:
     assert plan._repr_html_().count("<tr>") == 1 + len(plan.steps)
 
 
+@pytest.mark.long
 def test_where_no_plan_was_found_the_unmet_goal_and_what_was_refuted_are_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from benchmarks.engine.movingai import read_trips
 from tests.tables import few
 from utak.geometry import Screen
-from utak.geometry.io.movingai import read_trips
 from utak.geometry.io.svg import draw, route_line_width
 from utak.simulator.cli.main import main
 
@@ -90,7 +90,8 @@ def test_a_picture_without_a_way_shows_the_ends(tmp_path: Path) -> None:
 @pytest.mark.parametrize("side", few([3, 12, 64, 512], [3, 12]))
 def test_lines_and_sizes_are_in_proportion(side: int) -> None:
     screen = Screen(np.ones((side, side), np.bool_))
-    tree = ElementTree.fromstring(draw(screen, screen.routes((0.5, 0.5), (side - 0.5, side - 0.5), k=1)))
+    ends = (0.5, 0.5), (side - 0.5, side - 0.5)
+    tree = ElementTree.fromstring(draw(screen, screen.routes(*ends, k=1), ends))
     assert 144 <= float(tree.get("height", "0")) <= 1100
     scale = min(48.0, 960 / side)
     for number in range(8):

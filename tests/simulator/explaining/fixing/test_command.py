@@ -9,7 +9,7 @@ from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import EpisodeLog, read_episode
 from utak.simulator.episode.schema import complaints
 from utak.simulator.explaining.fixing.changes import Led, variant_of
-from utak.simulator.explaining.fixing.leading import Leader, free_squares, move_towards, way_between
+from utak.simulator.explaining.fixing.leading import free_squares, lead, move_towards, way_between
 from utak.simulator.explaining.fixing.proving import Budget, VariantProver
 from utak.simulator.explaining.fixing.recorded import recorded_run
 from utak.simulator.run.robots import make_robot
@@ -17,6 +17,8 @@ from utak.simulator.run.session import Session
 from utak.simulator.scenario.scenario import Scenario, read_scenario
 from utak.simulator.scenario.settings import Settings
 from utak.simulator.world.physics import Tabletop
+
+pytestmark = pytest.mark.long
 
 CLOSED = """\
 bbbbbbbbbbbbbbbbb
@@ -50,7 +52,6 @@ def closed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "ep.jsonl"
 
 
-@pytest.mark.long
 def test_a_new_door_is_found_and_written(closed: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     new = tmp_path / "new"
     assert main(["explain", str(closed), "--fix", "--json", "--write", str(new)]) == 0
@@ -136,16 +137,14 @@ def test_a_command_that_leads_moves_as_it_should(heading: int) -> None:
     assert table.utak == pytest.approx((x + 1.5, y - 0.5))
 
 
-@pytest.mark.long
 def test_the_robot_is_led_to_a_place_and_then_acts_by_itself(closed: Path) -> None:
     run = recorded_run("ep", read_episode(closed))
     place = (6.5, 6.5)
     variant = variant_of(run.scenario, run.settings, [Led(place, "a corner")])
     assert variant is not None and variant.led == (place,)
-    leader = Leader(place, make_robot)
-    session = Session(run.scenario, run.settings, leader.make, EpisodeLog(None))
+    session = Session(run.scenario, run.settings, make_robot, EpisodeLog(None))
     session.wake()
-    assert leader.lead(session, lambda session: None)
+    assert lead(session, place, lambda: None)
     assert session.table.utak == pytest.approx(place)
     assert session.line["why"] == "the robot is led here by a command that is given to it"
     while not session.finished:

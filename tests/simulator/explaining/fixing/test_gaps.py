@@ -55,6 +55,7 @@ def test_a_door_is_wider_by_exactly_so_much(low: int, width: int, side: GapSide,
     assert added.area == pytest.approx(by * thickness)
 
 
+@pytest.mark.long
 @given(st.floats(-40, 40), st.integers(1, 8))
 @settings(max_examples=10, deadline=None)
 def test_a_door_in_a_wall_askew_is_measured_and_widened(degrees: float, steps: int) -> None:

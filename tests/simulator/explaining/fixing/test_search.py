@@ -11,9 +11,11 @@ import pytest
 import shapely
 
 from utak.kb.body import Body, Command, Grasp, Push
-from utak.kb.task.task import Task
+from utak.kb.language.reader import facts_from_text
+from utak.kb.task.task import Task, task_from_texts
 from utak.planner.cycle import StepReport, Verdict
 from utak.simulator.episode.episode import Episode
+from utak.simulator.episode.record import fact_lines
 from utak.simulator.explaining.fixing.changes import (
     Away,
     Dropped,
@@ -25,7 +27,7 @@ from utak.simulator.explaining.fixing.changes import (
 )
 from utak.simulator.explaining.fixing.gaps import Gap, GapSide, passages_of
 from utak.simulator.explaining.fixing.proving import Budget
-from utak.simulator.explaining.fixing.recorded import RecordedRun, facts_of, task_from_texts
+from utak.simulator.explaining.fixing.recorded import RecordedRun
 from utak.simulator.explaining.fixing.search import FixReport, find_fixes
 from utak.simulator.run.embodiment import Embodiment
 from utak.simulator.scenario.scenario import Scenario
@@ -80,7 +82,7 @@ def corridor(*things: Thing, doors: tuple[tuple[float, float], ...] = ((3.75, 5.
 def scenario_of(world: World, expect: str = 'visits(t, "POLYGON ((13 1, 19 1, 19 8, 13 8, 13 1))")') -> Scenario:
     """Return the scenario in which t must come to the east."""
     task = task_from_texts("object(x). shape(x,square).", "in(x,room(next)).")
-    return Scenario(world, task, facts_of([expect]) if expect else None)
+    return Scenario(world, task, facts_from_text(fact_lines([expect])) if expect else None)
 
 
 def found_in(scenario: Scenario, runs: int = 400, max_steps: int = 50) -> FixReport:
@@ -138,6 +140,7 @@ BESIDE = Thing("m", "m", shapely.box(2, 1, 3, 2))  # in nobody's way
 POST = Thing("p", "p", shapely.box(8.5, 4, 9, 5))  # fixed, in the way before x = 12
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("world", "names"),
     [
@@ -234,7 +237,9 @@ def test_a_thing_that_is_wanted_somewhere_stays() -> None:
 
 def test_expectations_of_a_failure_do_not_bind_the_changed_scenario() -> None:
     scenario = scenario_of(corridor(BLOCK), "fails")
-    facts = facts_of(["fails", "unmoved(k)", "within(9)", 'inside(t,"POLYGON ((12 1, 19 1, 19 8, 12 8, 12 1))")'])
+    facts = facts_from_text(
+        fact_lines(["fails", "unmoved(k)", "within(9)", 'inside(t,"POLYGON ((12 1, 19 1, 19 8, 12 8, 12 1))")'])
+    )
     variant = variant_of(Scenario(scenario.world, scenario.task, facts), Settings(), [Away("k")])
     assert variant is not None
     assert variant.scenario.expectations == facts[3:]
@@ -263,7 +268,9 @@ def test_goals_are_dropped_so_that_a_task_is_left() -> None:
 
 def test_a_dropped_goal_takes_its_expectations_with_it() -> None:
     task = task_from_texts("object(x).", "at(x,corner(northeast)). at(utak,start).")
-    facts = facts_of(['near(utak,"POINT (3 4)",1)', 'inside(t,"POLYGON ((12 1, 19 1, 19 8, 12 8, 12 1))")'])
+    facts = facts_from_text(
+        fact_lines(['near(utak,"POINT (3 4)",1)', 'inside(t,"POLYGON ((12 1, 19 1, 19 8, 12 8, 12 1))")'])
+    )
     scenario = Scenario(corridor(), task, facts)
     for index, kept in ((0, facts[:1]), (1, facts[1:])):
         variant = variant_of(scenario, Settings(), [Dropped(index, str(task.goals[index]), False)])

@@ -65,7 +65,7 @@ def sweep(folder: Path, *options: str) -> "subprocess.Popen[str]":
     return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def test_on_dask_results_are_the_same_byte_for_byte_also_when_a_worker_is_lost(tmp_path: Path) -> None:
+def test_on_dask_results_are_the_same_also_when_a_worker_is_lost(tmp_path: Path) -> None:
     assert main(["new", str(tmp_path / "small")]) == 0
     here, there = tmp_path / "here.jsonl", tmp_path / "there.jsonl"
     place = tmp_path / "elsewhere"
@@ -74,12 +74,17 @@ def test_on_dask_results_are_the_same_byte_for_byte_also_when_a_worker_is_lost(t
         at_home = sweep(tmp_path, "--jobs", "2", "-o", str(here))
         assert at_home.communicate(timeout=6000)[1] == "" and at_home.returncode == 0
         on_dask = sweep(tmp_path, "--dask", address, "-o", str(there))
-        while on_dask.poll() is None and not (there.exists() and there.read_bytes().count(b"\n") > 1):
+        while on_dask.poll() is None and not (there.exists() and there.read_bytes().count(b"\n") > 0):
             time.sleep(0.02)
         first.kill()
         assert on_dask.communicate(timeout=6000)[1] == "" and on_dask.returncode == 0
-    assert there.read_bytes() == here.read_bytes()
-    assert here.read_bytes().count(b"\n") == 4
+    lines = [
+        sorted(
+            (json.loads(line) | {"seconds": 0} for line in path.read_text().splitlines()), key=lambda row: row["seed"]
+        )
+        for path in (here, there)
+    ]
+    assert lines[0] == lines[1] and len(lines[0]) == 3
 
 
 def test_a_worker_with_other_code_is_refused_with_a_reason(tmp_path: Path) -> None:
@@ -91,7 +96,7 @@ def test_a_worker_with_other_code_is_refused_with_a_reason(tmp_path: Path) -> No
     with (
         scheduler(tmp_path) as address,
         worker(tmp_path, address, other),
-        pytest.raises(CannotOpenError, match=r"a worker has another state of utak: .*code \w+, not \w+"),
+        pytest.raises(CannotOpenError, match=r"it has another state of utak: .*code \w+, not \w+"),
     ):
         list(run_on_dask([TASK], address))
 

@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
-from utak.simulator.sweep.executors.cluster_worker import MISMATCH, run_task
+import pytest
+
+from utak.simulator.sweep.executors.cluster import run_task
 from utak.simulator.sweep.executors.code_identity import (
     DECIDING_PACKAGES,
     code_digest,
@@ -10,6 +12,7 @@ from utak.simulator.sweep.executors.code_identity import (
     difference,
     utak_version,
 )
+from utak.simulator.sweep.executors.tasks import WorkerTask
 
 ROOT = Path(__file__).resolve().parents[4]
 
@@ -51,6 +54,6 @@ def test_the_identity_names_this_code_and_its_libraries() -> None:
 
 def test_another_state_of_the_code_is_refused_by_a_worker() -> None:
     other = {**code_identity(), "code": "0123"}
-    found = run_task("sweep", other, None, ["operator:neg", 1, None])
-    assert found == {MISMATCH: f"code {code_identity()['code']}, not 0123"}
+    with pytest.raises(RuntimeError, match=f"another state of utak: code {code_identity()['code']}, not 0123"):
+        run_task("sweep", other, None, WorkerTask("operator:neg", 1))
     assert difference(other, other) == ""

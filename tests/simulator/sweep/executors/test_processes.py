@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from benchmarks.episodes.killing import descendants_of, still_there
-from utak.simulator.sweep.executors.in_process import run_in_this_process
 from utak.simulator.sweep.executors.processes import run_in_processes
 from utak.simulator.sweep.executors.task_process import TaskProcess
 from utak.simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, WorkerTask, carry_out
@@ -114,7 +113,7 @@ def test_nothing_in_the_working_directory_is_executed(tmp_path: Path, monkeypatc
 
 def test_in_this_process_tasks_have_the_same_outcomes() -> None:
     tasks = [WorkerTask("operator:neg", 5), WorkerTask("operator:neg", "text"), WorkerTask("no.such:thing", 1)]
-    found = dict(run_in_this_process(tasks))
+    found = [carry_out(task) for task in tasks]
     assert found[0].value == -5
     assert found[1].reason.startswith("TypeError")
     assert found[2].reason.startswith("ModuleNotFoundError")

@@ -56,6 +56,7 @@ def test_the_plain_form_is_that_of_a_world_file(
     assert read_picture(tmp_path / "world.txt") == read_picture(scenario / "world.txt")
 
 
+@pytest.mark.long
 def test_a_step_is_shown_with_what_is_believed_upon_it(
     scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
