@@ -96,9 +96,28 @@ def _parted(region: Bools, colours: Mapping[RowColumn, str]) -> Parting:
         mixed = _mixed(labels, colours)
     if mixed:
         return Parting((region,))
-    parts = tuple(labels == n for n in range(1, int(labels.max()) + 1))
+    labels = _rejoined(labels, colours)
+    parts = tuple(labels == n for n in np.unique(labels[labels > 0]).tolist())
     unsettled = [_unsettled(line, region, colours) for line in cuts]
     return Parting(parts, tuple(mask for mask in unsettled if mask.any()))
+
+
+def _rejoined(labels: Labels, colours: Mapping[RowColumn, str]) -> Labels:
+    """Return the parts with those made one that touch and were felt in the same colour: no cut was for them."""
+    colour_of = {int(labels[place]): colour for place, colour in colours.items()}
+    pairs = {
+        (int(one), int(other))
+        for across in (labels, labels.T)
+        for one, other in np.unique(np.column_stack([across[:, 1:].ravel(), across[:, :-1].ravel()]), axis=0)
+        if one and other and one != other
+    }
+    first = {number: number for number in colour_of}
+    for one, other in sorted(pairs):
+        if colour_of.get(one, "") == colour_of.get(other):
+            low, high = sorted((first[one], first[other]))
+            first = {number: low if part == high else part for number, part in first.items()}
+    joined: Labels = np.array([first.get(n, n) for n in range(int(labels.max()) + 1)], labels.dtype)[labels]
+    return joined
 
 
 def cornered_parts(solid: Bools, felt: Mapping[RowColumn, str]) -> list[Bools]:
