@@ -244,6 +244,7 @@ PLAN_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("refuted", 2): BeliefPredicate((PLAN_STEP_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("given", 2): BeliefPredicate((COUNT_ARGUMENT, CIRCUMSTANCE_ARGUMENT), Openness.NEVER),
 }
+STATEMENT_ARGUMENT = ArgumentType("fact without its confidence", lambda _: None)
 TWO_POINTS = (LENGTH_ARGUMENT,) * 4  # (east, north) of one point, then of another
 
 
@@ -288,8 +289,18 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
     ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
     ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, MEANT_ARGUMENT), Openness.UNBOUND),
+    ("chance", 2): BeliefPredicate((STATEMENT_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.NEVER),
+    ("open", 2): BeliefPredicate((STATEMENT_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.NEVER),
+    ("known", 1): BeliefPredicate((STATEMENT_ARGUMENT,), Openness.NEVER),
+    ("possible", 1): BeliefPredicate((STATEMENT_ARGUMENT,), Openness.NEVER),
     **PLAN_PREDICATES,
 }
+
+
+def may_be_otherwise(name: str, subject: object) -> bool:
+    """Return whether the confidence of a fact about a subject is the chance that it holds."""
+    # For outlines, the floor and the verge it is the share of their squares that is settled.
+    return name != "segment" and not (name == "kind" and str(subject) in NEVER_OBJECTS)
 
 
 def thing_positions(signature: Signature) -> frozenset[int]:

@@ -27,6 +27,7 @@ from utak.kb.language.vocabulary import (
     RESUMED_STEPS,
     SETTLING_STEPS,
     SHAPE_CLASSES,
+    THING_ARGUMENT,
     Signature,
 )
 
@@ -77,6 +78,12 @@ def _compound_argument(name: str, plural: str, forms: Forms) -> ArgumentType:
 
 
 STEP_ARGUMENT = _compound_argument("step", "steps", PLAN_STEPS)
+# The facts of the world model that may hold or not, without their confidence.
+STATED_FACTS: Forms = {
+    name: declared.arguments[:-1] for (name, _), declared in BELIEF_PREDICATES.items() if declared.confident
+}
+ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
+FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
 # The activities of the agenda.
 WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look")  # about nothing in particular
@@ -87,7 +94,12 @@ ACTIVITIES: Forms = {
 }
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
 # By the name of an argument type of compound terms: these terms.
-COMPOUND_FORMS: Mapping[str, Forms] = {"step": PLAN_STEPS, "activity": ACTIVITIES}
+COMPOUND_FORMS: Mapping[str, Forms] = {
+    "step": PLAN_STEPS,
+    "activity": ACTIVITIES,
+    "fact": STATED_FACTS,
+    "act": ACTS,
+}
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
@@ -126,6 +138,11 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     "corners": {
         ("convex", 3): (CONVEX_CORNER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
+    },
+    "alternatives": {
+        ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("true", 1): (FACT_ARGUMENT,),
+        ("decides", 2): (_compound_argument("act", "acts", ACTS), FACT_ARGUMENT),
     },
     "reconciliation": {
         ("wanted", 1): (PARAMETER_ARGUMENT,),
@@ -286,7 +303,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
-    {("region", 3), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4)}
+    {("region", 3), ("stated", 2), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4)}
     | {("described", 2), ("place", 3)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them

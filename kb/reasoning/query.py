@@ -7,20 +7,26 @@ for `kind(N, object, C)`. `utak.kb.three_valued.evaluation` decides what is cert
 of kb.language.vocabulary; docs/files.md describes the rules.
 """
 
+import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any
+from typing import Any, NamedTuple
 
+from utak.kb.language.atoms import atom_parts
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from utak.kb.language.integers import integers_beyond_32_bits
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.language.terms import Fact, Number
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, may_be_otherwise
+from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_text
 from utak.kb.reasoning.rulebook import Statement
 from utak.kb.reasoning.worker import Worker
+from utak.kb.tracing.possible_worlds import NATS
 
+ALTERNATIVES = KB_ENCODINGS / "alternatives.lp"
 MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default; a convention
 MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
 MAX_QUERIES_PER_WORKER = 20_000  # queries after which a new process answers, 0.1 s once; a convention
@@ -65,6 +71,21 @@ def plain_table(columns: Sequence[str], rows: Sequence[Sequence[int | str]]) -> 
     return "\n".join("  ".join(map(str.ljust, row, widths)).rstrip() for row in cells)
 
 
+class PossibleWorld(NamedTuple):
+    """One possible world: of the facts that are not settled, those that hold."""
+
+    chance: float  # from 0 to 1
+    facts: tuple[str, ...]
+
+
+class Alternatives(NamedTuple):
+    """The likeliest possible worlds of a step, and what is open in them."""
+
+    worlds: tuple[PossibleWorld, ...]  # the likeliest ones, the likeliest first
+    # (fact, its least and greatest chance, the acts that would decide it) of each fact that is not settled
+    open: tuple[tuple[str, float, float, tuple[str, ...]], ...]
+
+
 class QueryEngine:
     """Answers queries one after another in one separate process; leaving a `with` statement ends the process."""
 
@@ -72,6 +93,7 @@ class QueryEngine:
         self.seconds = seconds
         self._files: tuple[str, ...] = ()
         self._rules: Sequence[Statement] = ()
+        self._weighing: Sequence[Statement] = ()  # those about possible worlds
         self._worker = Worker()
         self._facts: tuple[str, ...] | None = None  # the facts of the last query
         self._entries: list[list[int | str]] = []  # the same as the worker takes them
@@ -99,7 +121,9 @@ class QueryEngine:
             return
         from utak.kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
 
-        self._rules = read_rules(files).query_rules if files else ()
+        read = read_rules(files) if files else None
+        self._rules = read.query_rules if read is not None else ()
+        self._weighing = read.rules_reaching(ALTERNATIVES.stem) if read is not None else ()
         self._files, self._facts = files, None
 
     def close(self) -> None:
@@ -124,6 +148,19 @@ class QueryEngine:
             tuple(map(tuple, found["rows"])),
             found["more"],
             tuple(found["types"]),
+        )
+
+    def worlds(self, facts: Sequence[str], number: int) -> Alternatives:
+        """Return the likeliest possible worlds over facts, and what is not settled in them."""
+        asked = worlds_request(facts, (one.text for one in self._weighing), number)
+        found = self._worker.exchange({"worlds": asked}, self.seconds)
+        if "limit" in found:
+            raise QueryLimitError(f"the worlds were given up: {found['limit']}")
+        if "failed" in found:
+            raise _query_error("worlds", found["failed"], hint="users' rules may forbid all")
+        return Alternatives(
+            tuple(PossibleWorld(chance, tuple(facts)) for chance, facts in found["worlds"]),
+            tuple((fact, least, greatest, tuple(acts)) for fact, least, greatest, acts in found["open"]),
         )
 
     def _exchange(self, facts: Sequence[str], request: dict[str, Any]) -> dict[str, Any]:
@@ -154,6 +191,24 @@ def request_entries(facts: Sequence[str]) -> list[list[int | str]]:
 def _request_entry(fact: Fact) -> list[int | str]:
     """Return a fact as the worker takes it: [name, argument, ...], arguments as integers or as the text of terms."""
     return [fact.name, *(term.value if isinstance(term, Number) else str(term) for term in fact.args)]
+
+
+def _alternatives_facts(facts: Iterable[str]) -> list[str]:
+    """Return what kb/asp/alternatives.lp is given about the facts of a step, all without their full stops."""
+    stated: dict[str, int] = {}
+    for fact in facts:
+        name, arguments = atom_parts(fact.removesuffix("."))
+        declared = BELIEF_PREDICATES.get((name, len(arguments)))
+        if declared is not None and declared.confident and may_be_otherwise(name, arguments[0]):
+            stated[f"{name}({','.join(arguments[:-1])})"] = int(arguments[-1])
+    weights = (f"weight({percent},{round(-NATS * math.log(percent / 100))})" for percent in range(1, 101))
+    return [*(f"stated({fact},{confidence})" for fact, confidence in stated.items()), *weights]
+
+
+def worlds_request(facts: Iterable[str], rules: Iterable[str], number: int) -> dict[str, Any]:
+    """Return the arguments of `likeliest_worlds` for the facts of a step: the process that solves opens no file."""
+    program = [*rules, encoding_text(ALTERNATIVES), *(f"{fact}." for fact in _alternatives_facts(facts))]
+    return {"program": "\n".join(program), "number": number}
 
 
 def _query_error(text: str, what: str, at: Sequence[int] = (1, 0), hint: str = "") -> BadInputError:

@@ -28,6 +28,7 @@ from utak.kb.three_valued.open_world import Beliefs, FactRow
 from utak.kb.three_valued.provenance import certain_instances
 from utak.kb.three_valued.term_values import Bindings
 from utak.kb.three_valued.uncertain_values import Value
+from utak.kb.tracing.possible_worlds import likeliest_worlds
 from utak.kb.tracing.requests import respond
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
@@ -214,6 +215,8 @@ def _respond(line: bytes) -> Response:
             return justify_rules(request["facts"], request["rules"])
         if "trace" in request:
             return respond(request["trace"])
+        if "worlds" in request:
+            return likeliest_worlds(**request["worlds"])
         if "program" in request:
             return solve_with_rules(**request)
         believed = _held_facts(request)

@@ -3,10 +3,20 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, PLAN_PREDICATES, BeliefPredicate, Openness, Signature
+import clingo
+
+from utak.kb.language.vocabulary import (
+    BELIEF_PREDICATES,
+    PLAN_PREDICATES,
+    BeliefPredicate,
+    Openness,
+    Signature,
+    may_be_otherwise,
+)
 from utak.kb.three_valued.uncertain_values import Unknown, Value, compare
 
 FactRow = tuple[Value, ...]  # the arguments of one fact
+CHANCE_SIGNATURE, OPEN_SIGNATURE = ("chance", 2), ("open", 2)
 OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)
 PARAMETER_SIGNATURE = ("parameter", 1)  # the parameters of the task
 # These are about parameters and the plan, not about things.
@@ -33,8 +43,25 @@ class Beliefs:
         )
         counts = [row[1] for row in self._rows.get(("unseen", 2), ())]
         self.everything_seen = not any(isinstance(count, int) and count > 0 for count in counts)
+        self._state_chances()
         self._objects = sorted(row[0] for row in self._rows.get(OBJECT_SIGNATURE, ()))
         self._parameters = sorted(row[0] for row in self._rows.get(PARAMETER_SIGNATURE, ()))
+
+    def _state_chances(self) -> None:
+        """State chance/2, open/2, known/1 and possible/1 of the facts, each as a term without its confidence."""
+        for (name, arity), rows in list(self._rows.items()):
+            declared = BELIEF_PREDICATES.get((name, arity))
+            is_unsure = declared is not None and declared.confident
+            for row in rows:
+                if is_unsure and not may_be_otherwise(name, row[0]):
+                    continue
+                chance = row[-1] if is_unsure else 100
+                fact = clingo.Function(name, [_as_symbol(value) for value in (row[:-1] if is_unsure else row)])
+                self._rows.setdefault(CHANCE_SIGNATURE, {})[fact, chance] = None
+                for modal, holds in (("known", chance == 100), ("possible", chance > 0)):
+                    self._rows.setdefault((modal, 1), {}).update({(fact,): None} if holds else {})
+                if 0 < chance < 100:
+                    self._rows.setdefault(OPEN_SIGNATURE, {})[fact, chance] = None
 
     def signatures(self) -> dict[Signature, list[FactRow]]:
         """Return the predicates (name, number of arguments) that certainly hold of something, each with its rows."""
@@ -112,6 +139,11 @@ class Beliefs:
         values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
         values[declared.subject] = subject
         return tuple(values)
+
+
+def _as_symbol(value: Value) -> clingo.Symbol:
+    """Return a value as a clingo symbol."""
+    return clingo.Number(value) if isinstance(value, int) else value
 
 
 def _includes(a: Value, b: Value) -> bool:

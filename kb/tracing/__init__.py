@@ -15,6 +15,7 @@ domains       the values that arguments may have: known ones, and numbers that r
 candidates    facts that might be given besides, so that an atom holds
 switches      programs whose facts can be taken away or given besides
 changes       the smallest changes of the facts that make an atom hold
+possible_worlds  answer sets weighed: exact chances by independent components, and the likeliest worlds
 requests      all of this as requests and responses of JSON values
 
 Public names: `respond`, `ProgramPart`.

@@ -4,12 +4,14 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
+from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.assumptions import canonical_facts
 from utak.kb.reasoning.query import MAX_ANSWER_ROWS, QueryAnswer
 from utak.simulator.repl.dialogue import Dialogue
 from utak.simulator.repl.printer import units_of
 
 ROBOT_NAMES = frozenset({"utak", "org"})  # the robot in questions and in facts
+DEFAULT_WORLDS, MAX_WORLDS = 5, 1000  # possible worlds that `worlds` prints; conventions
 MAX_ROWS_ASKED = 1_000_000  # rows of an answer that `;` can reach; a convention
 
 
@@ -85,6 +87,36 @@ def names_word(fact: str, word: str) -> bool:
     """
     words = set(re.findall(r"\w+", fact))
     return bool(words & ROBOT_NAMES) if word in ROBOT_NAMES else word in words
+
+
+def worlds(dialogue: Dialogue, rest: str) -> None:
+    """Print the likeliest possible worlds, and what would decide between them."""
+    asked = rest.removesuffix(".").strip()
+    if asked and not (asked.isascii() and asked.isdecimal() and 0 < int(asked[:9]) <= MAX_WORLDS):
+        raise BadInputError.about("worlds", asked, f"this is no number from 1 to {MAX_WORLDS}", "such as worlds 3")
+    dialogue.engine.use_rules(dialogue.story.rule_files)
+    found = dialogue.engine.worlds(dialogue.known_facts(), int(asked or DEFAULT_WORLDS))
+    if not found.open:
+        dialogue.printer.say("one world: nothing that is believed may be otherwise")
+        return
+    first = set(found.worlds[0].facts)
+    for number, world in enumerate(found.worlds):
+        there = set(world.facts)
+        changes = [*(f"not {fact}" for fact in sorted(first - there)), *sorted(there - first)]
+        told = ", ".join(changes if number else world.facts) or "none of what is open holds"
+        dialogue.printer.say(f"{_percent(world.chance, world.chance)}  {'but ' if number else ''}{told}")
+    rows = [(fact, _percent(least, greatest), ", ".join(acts)) for fact, least, greatest, acts in found.open]
+    dialogue.printer.table(("open", "chance", "what would decide it"), rows)
+
+
+def _percent(least: float, greatest: float) -> str:
+    """Return a chance in percent, or the two between which it lies.
+
+    >>> _percent(0.305, 0.305), _percent(0, 1)
+    ('30.5 %', '0.0 to 100.0 %')
+    """
+    low, high = f"{100 * least:.1f}", f"{100 * greatest:.1f}"
+    return f"{low} %" if low == high else f"{low} to {high} %"
 
 
 def since(dialogue: Dialogue, rest: str) -> None:

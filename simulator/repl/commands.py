@@ -66,6 +66,13 @@ PROMPT_COMMANDS: Mapping[str, PromptCommand] = {
         asking.since,
         "_ stands for any value: since shape(o1, square, _). Any query may stand for the fact.",
     ),
+    "worlds": PromptCommand(
+        "worlds [N]",
+        "the likeliest possible worlds, and what would decide between them",
+        asking.worlds,
+        "Each is what holds of all that is not settled; those after the first are told by what is otherwise in them.\n"
+        "The chance of a fact is the share of the worlds in which it holds (kb/asp/alternatives.lp).",
+    ),
     "diff": PromptCommand(
         "diff T1 T2 [WORD]",
         "the facts that hold at only one of two steps",

@@ -112,6 +112,18 @@ def test_queries_facts_and_the_names_of_the_robot(dialogue: Dialogue, capsys: py
     assert talk(dialogue, capsys, ";")[1] == "there are no more rows\n"
 
 
+def test_possible_worlds(dialogue: Dialogue, capsys: pytest.CaptureFixture[str]) -> None:
+    likeliest, second, *table = talk(dialogue, capsys, "worlds 2")[0].splitlines()
+    assert likeliest.split("  ")[1:] == ["kind(o1,verge)"]
+    assert second.split("  ")[1:] == ["but not kind(o1,verge), kind(o1,object)"]
+    assert sum(float(line.split(" %")[0]) for line in (likeliest, second)) == pytest.approx(100.0)
+    assert [row.split()[-1] for row in table[1:]] == ["feel(o1)", "feel(o1)"]
+    for wrong in ("0", "x", "-1", "1001", "2 3", "9" * 30):
+        assert "this is no number from 1 to 1000" in talk(dialogue, capsys, f"worlds {wrong}")[1]
+    out = talk(dialogue, capsys, "?- chance(F, C), 0 < C, C < 100.")[0]
+    assert out == talk(dialogue, capsys, "?- open(F, C).")[0]
+
+
 def test_since_and_diff(dialogue: Dialogue, capsys: pytest.CaptureFixture[str]) -> None:
     talk(dialogue, capsys, "goto 2")
     assert talk(dialogue, capsys, "since in(utak, r1).")[0] == "it holds since step 0\n"
@@ -402,7 +414,8 @@ def test_text_is_broken_between_words_on_a_terminal(
             assert (max(len(line) for line in said.splitlines()[:-1]) <= 30) == is_terminal
 
 
-COMMAND_WORDS = """?- facts step back goto run diff since assume retract goal plan show truth why step. ; help save
+COMMAND_WORDS = """?- worlds facts step back goto run diff since assume retract goal plan show truth why step. ; help
+    save
     node(o1) shape(o1,square,90). door(d9). kind(X,object,C), 0 1 2 99 at(utak,x). at(utak,corner(southwest)). utak not
     . , ( { :- #include X bound(x,o2). 1..99999999"""
 WORDS = st.sampled_from([*COMMAND_WORDS.split(), '"', "%", "\n", "\x00", "\x1b[31m", "\u00f6", "\ud800"])
