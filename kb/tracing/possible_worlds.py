@@ -41,7 +41,7 @@ class PossibleWorlds:
 
     @cached_property
     def open(self) -> frozenset[clingo.Symbol]:
-        """What holds in some worlds and not in others."""
+        """The atoms that hold in some worlds and not in others."""
         return frozenset(atom for component in self.components for atom in component.atoms)
 
     def chance(self, *atoms: clingo.Symbol) -> tuple[float, float]:
