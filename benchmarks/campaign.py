@@ -75,7 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--noise-seed", type=int, default=0, help="seed of the noise (%(default)s)")
     parser.add_argument("--paths", default="skeleton", help="path-finder: skeleton, visibility or grid")
     parser.add_argument("--max-steps", type=int, default=200, help="most commands (%(default)s)")
-    parser.add_argument("--seconds", type=int, default=120, help="most seconds a world, 0 for no limit (%(default)s)")
+    parser.add_argument("--seconds", type=int, default=120, help="most processor seconds, 0 for any (%(default)s)")
     parser.add_argument("-o", "--output", type=Path, help="a JSON line for each world")
     parser.add_argument("--only", metavar="TASK:SEED", help="one world, drawn at each step on stderr")
     add_kinds(parser)

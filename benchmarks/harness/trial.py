@@ -32,12 +32,12 @@ from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 LOOPS = (4,)  # tasks whose shortest way is a loop
 # A trial ends itself after its seconds, unless compiled code does not return. Then its process is ended; a convention.
-PROCESS_LIMIT_FACTOR, PROCESS_START_SECONDS = 2, 60
+PROCESS_LIMIT_FACTOR, PROCESS_START_SECONDS = 10, 60
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """The conditions of a trial: noise and its seed, path-finder, greatest number of commands and of seconds.
+    """The conditions of a trial: noise and its seed, path-finder, greatest number of commands and of processor seconds.
 
     knowing : whether a robot that knows everything is run, too. kind : of the world, see benchmarks.worlds.makers.
     """
@@ -137,7 +137,7 @@ def trial_of_outcome(task: int, seed: int, conditions: Conditions, outcome: Task
 
 
 class _TooLongError(Exception):
-    """The trial took more than its seconds."""
+    """The trial took more than its seconds of processor time."""
 
 
 def run_trial(
@@ -244,7 +244,7 @@ def _scored(world: RandomScenario, robot: Any, moved: dict[str, Polygon], track:
 
 
 class _alarm:  # noqa: N801
-    """Return a context within which an alarm ends what takes too long. seconds : 0 for never."""
+    """A context within which an alarm ends what takes too many seconds of processor time. seconds : 0 for never."""
 
     def __init__(self, seconds: int) -> None:
         self._seconds = seconds
@@ -253,9 +253,9 @@ class _alarm:  # noqa: N801
         def ring(number: int, frame: object) -> None:
             raise _TooLongError(f"took more than {self._seconds} s")
 
-        self._before = signal.signal(signal.SIGALRM, ring)
-        signal.alarm(self._seconds)
+        self._before = signal.signal(signal.SIGPROF, ring)
+        signal.setitimer(signal.ITIMER_PROF, self._seconds)
 
     def __exit__(self, *_: object) -> None:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, self._before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, self._before)
