@@ -15,7 +15,7 @@ from utak.kb.evidence.witness import (
     node_squares,
     seen_reason,
 )
-from utak.kb.language.atoms import atom_parts
+from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError, did_you_mean
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import thing_positions
@@ -54,6 +54,10 @@ class FactExplainer:
             return Reason(fact, words_of("belief", fact), ReasonKind.TASK, "the task")
         if name in TASK_PLAN_NAMES:
             return plan_fact_reason(self, fact, step)
+        long = long_form(fact)
+        if long in self.record.steps[step].fact_set:
+            known = self.reason(long, step)
+            return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", (known,) * bool(known))
         below = self._below(fact, name, arguments, step)
         return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
@@ -103,7 +107,10 @@ class FactExplainer:
         if name == "segment":
             return self._segment_reasons(node, arguments, step)
         if name == "adjacent":
-            return self._facts([f"offset({ROOT_NODE},", f"rect({arguments[1]},"], step)
+            things = sorted(arguments[:2], key=lambda thing: thing != ROOT_NODE)
+            return self._facts([f"{'offset' if one == ROOT_NODE else 'rect'}({one}," for one in things], step)
+        if name in ("region", "part_of"):
+            return self._region_reasons(node, step)
         if name == "bound":
             return self._meaning_reasons(arguments[0], arguments[1], step)
         if name in ("offset", "in", "rect") and node == ROOT_NODE:
@@ -147,11 +154,18 @@ class FactExplainer:
     def _room_reasons(self, room: str, step: int) -> list[Reason]:
         """Return why a part of the floor is a room: the doors that bound it, as far as they are believed."""
         now = self.record.steps[step]
-        doors = [atom_parts(fact)[1][0] for fact in now.facts if fact.startswith("connects(") and f",{room}," in fact]
+        leading = [atom_parts(fact)[1] for fact in now.long_facts if fact.startswith("connects(")]
+        doors = [door for door, one, *_ in leading if one == room]
         ends = f"{room} ends at walls, at what was not seen yet, or at necks that are not sure enough to be doors"
         parted = [] if doors else [Reason("no believed door bounds it", ends, ReasonKind.MEASURED, f"step {step}")]
         floor = squares_reason(self.record, step, FLOOR_NODE)
-        return [*self._facts([f"door({door})" for door in doors], step), *parted, floor]
+        return [*self._facts([f"door({door}{end}" for door in doors for end in (",", ")")], step), *parted, floor]
+
+    def _region_reasons(self, region: str, step: int) -> list[Reason]:
+        """Return why there is a region of the map: the cells that show the squares of its node."""
+        facts = self.record.steps[step].facts
+        whole = next((atom_parts(fact)[1][1] for fact in facts if fact.startswith(f"part_of({region},")), FLOOR_NODE)
+        return [squares_reason(self.record, step, whole)]
 
     def _kind_reasons(self, node: str, kind: str, confidence: str, step: int) -> list[Reason]:
         """Return why a node is of a kind: the interpretation of its region, or that it was moved."""
@@ -165,7 +179,7 @@ class FactExplainer:
             found = self.decision("interpretation", f"kind({region},{kind},{confidence})", step, oldest=step)
             if found is not None:
                 return [found]
-            colour = next((fact for fact in now.facts if fact.startswith(f"colour({node},")), None)
+            colour = next((fact for fact in now.long_facts if fact.startswith(f"colour({node},")), None)
             if colour is not None:
                 return self._facts([colour], step)
         return [squares_reason(self.record, step, node)]
@@ -196,7 +210,7 @@ class FactExplainer:
 
     def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a corner is the furthest one: the answer of corners.lp with its place."""
-        side, east, north = arguments
+        side, east, north, *_ = arguments
         for number, call in self.record.answers(step, "corners"):
             for atom in call.answer or ():
                 kind, parts = atom_parts(atom)
@@ -257,7 +271,7 @@ class FactExplainer:
     def _facts(self, starts: list[str], step: int) -> list[Reason]:
         """Return the reasons of the believed facts that begin with some texts, in the order of these."""
         now = self.record.steps[step]
-        facts = [fact for start in starts for fact in now.facts if fact.startswith(start)]
+        facts = [fact for start in starts for fact in now.long_facts if fact.startswith(start)]
         return [reason for fact in facts if (reason := self.reason(fact, step)) is not None]
 
     def _not_believed(self, fact: str, step: int) -> BadInputError:
@@ -273,7 +287,7 @@ def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
     if name == "offset" and arguments[0] == FLOOR_NODE:
         east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[1:])
         return f"where the robot believes that it woke lies {east:g} squares east and {north:g} north of where it is"
-    if name == "kind" and arguments[0] in (FLOOR_NODE, VERGE_NODE):
+    if name == "kind" and len(arguments) == 3 and arguments[0] in (FLOOR_NODE, VERGE_NODE):
         return f"the squares of the {arguments[0]} are settled to {arguments[2]} percent on average"
     return words_of("belief", fact)
 
