@@ -193,8 +193,10 @@ def _true_width(line: tuple[XY, XY], table: Table) -> float | None:
     window = whole.buffer(DOOR_WINDOW)
     parts = shapely.get_parts(shapely.intersection(table.verge, window)).tolist()
     near = [min(parts, key=shapely.Point(end).distance, default=None) for end in line]
-    if near[0] is None or near[0] is near[1] or any(
-        part.distance(shapely.Point(end)) > NEAR_END for part, end in zip(near, line, strict=True)
+    if (
+        near[0] is None
+        or near[0] is near[1]
+        or any(part.distance(shapely.Point(end)) > NEAR_END for part, end in zip(near, line, strict=True))
     ):
         return None
     return float(near[0].distance(near[1]))
@@ -217,7 +219,13 @@ def false_in_run(folder: Path, noise: float = 0.0, seed: int = 1) -> tuple[Count
     for line in episode_lines(episode):
         things = {name: shapely.Polygon(points) for name, points in line["objects"].items()} | fixed
         table = Table(
-            world.verge, things, world.width, world.height, world.utak, world.heading, (line["utak"][0], line["utak"][1])
+            world.verge,
+            things,
+            world.width,
+            world.height,
+            world.utak,
+            world.heading,
+            (line["utak"][0], line["utak"][1]),
         )
         facts = [str(fact).removesuffix(".") for fact in line["belief"]["facts"]]
         for name, arguments in map(atom_parts, facts):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from utak.kb.evidence.beliefs import FactExplainer, plain_fact
+from utak.kb.evidence.beliefs import FactExplainer, plain_fact, with_node
 from utak.kb.evidence.inputs import Given, input_reason
 from utak.kb.evidence.plans import TASK_PLAN_NAMES, planned_choice
 from utak.kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
@@ -62,7 +62,9 @@ class AbsenceExplainer:
         below = tuple(reason for fact in found if (reason := self._facts.reason(fact, step)) is not None)
         if not below:
             below = (self.explain(long, step),)
-            return Reason(f"not {wanted}", f"{long} is not believed", ReasonKind.NEGATION, f"step {step}", below, below[0].data)
+            return Reason(
+                f"not {wanted}", f"{long} is not believed", ReasonKind.NEGATION, f"step {step}", below, below[0].data
+            )
         because = f"{wanted} is stated only with 100 percent; {', '.join(found)} is believed"
         data = {"missing": [f"{start}100)"], "in_way": found, "partial": False, "found": True}
         return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {step}", below, data)
@@ -70,6 +72,7 @@ class AbsenceExplainer:
     def _not_derived(self, wanted: str, signature: Signature, step: int) -> Reason:
         """Return why an atom of a predicate that users' rules define does not hold; BadInputError for others."""
         if signature in query_predicates(self._rule_files):
+            wanted = with_node(wanted)
             found = explain_query_absence(self._facts.record.steps[step].facts, wanted, self._rule_files)
             in_way = tuple(reason for fact in found.in_way if (reason := self._facts.reason(fact, step)) is not None)
             return self._reason_of(wanted, found, in_way, step)

@@ -57,7 +57,9 @@ class FactExplainer:
         long = long_form(fact)
         if long in self.record.steps[step].fact_set:
             known = self.reason(long, step)
-            return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", (known,) * bool(known))
+            return Reason(
+                fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", (known,) * bool(known)
+            )
         below = self._below(fact, name, arguments, step)
         return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
@@ -302,3 +304,13 @@ def plain_fact(fact: str) -> str:
     things = thing_positions((name, len(arguments)))
     named = [ROOT_NODE if at in things and argument == ROBOT else argument for at, argument in enumerate(arguments)]
     return f"{name}({','.join(named)})" if named else name
+
+
+def with_node(atom: str) -> str:
+    """Return an atom of a predicate that users' rules define for queries, with org for utak, as these hold it.
+
+    >>> with_node("alone(utak)")
+    'alone(org)'
+    """
+    name, arguments = atom_parts(atom)
+    return f"{name}({','.join(ROOT_NODE if one == ROBOT else one for one in arguments)})" if arguments else name

@@ -22,7 +22,7 @@ from utak.kb.language.vocabulary import (
     hint_for,
     thing_positions,
 )
-from utak.kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_THERE, USER_RULE_INTERFACES
+from utak.kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_PREDICATES, READ_ONLY_THERE, USER_RULE_INTERFACES
 from utak.kb.reasoning.rulebook import (
     INTERFACE_PREDICATES,
     INTERNAL_PREDICATES,
@@ -100,8 +100,7 @@ def _assumed_fact(source: Source, fact: Fact, kb_files: Sequence[str]) -> Assump
     fact = _with_org(fact)
     written = f"{fact}."
     signature = fact.signature
-    about_a_node = signature == ("kind", 3) and THING_ARGUMENT.check(fact.args[0]) is None
-    if signature in BELIEF_PREDICATES and (about_a_node or signature not in ENCODING_PREDICATES):
+    if signature in BELIEF_PREDICATES and _counts_for_queries(source, fact):
         types = {fact.name: BELIEF_PREDICATES[signature].arguments}
         problems = check_facts(source, [fact], types)
         if problems:
@@ -122,6 +121,21 @@ def _assumed_fact(source: Source, fact: Fact, kb_files: Sequence[str]) -> Assump
     if signature not in INTERFACE_PREDICATES and signature not in INTERNAL_PREDICATES:
         _require_own_predicate(source, fact, kb_files)
     return _rule(_placed(_guarded(fact), fact), written, (), kb_files)
+
+
+def _counts_for_queries(source: Source, fact: Fact) -> bool:
+    """Return whether a fact of the world model is one that no encoding takes: of its predicate, or about such things."""
+    signature = fact.signature
+    if signature == ("kind", 3) and THING_ARGUMENT.check(fact.args[0]) is None:
+        return True
+    taking = (
+        interface[signature]
+        for name, interface in USER_RULE_INTERFACES.items()
+        if signature in interface and signature not in READ_ONLY_THERE.get(name, ()) | READ_ONLY_PREDICATES
+    )
+    types = {fact.name: BELIEF_PREDICATES[signature].arguments}
+    refused = all(check_facts(source, [fact], {fact.name: slots}) for slots in taking)
+    return refused and (signature not in ENCODING_PREDICATES or not check_facts(source, [fact], types))
 
 
 def _require_own_predicate(source: Source, fact: Fact, kb_files: Sequence[str]) -> None:

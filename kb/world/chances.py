@@ -328,6 +328,4 @@ def _places_along(a: XY, b: XY) -> list[XY]:
     count = max(2, round(2 * math.dist(a, b)))
     parts = [(number + 0.5) / count for number in range(count)]
     x, y = 1e-6 * (ay - by), 1e-6 * (bx - ax)
-    return [
-        (ax + side * x + part * (bx - ax), ay + side * y + part * (by - ay)) for side in (-1, 1) for part in parts
-    ]
+    return [(ax + side * x + part * (bx - ax), ay + side * y + part * (by - ay)) for side in (-1, 1) for part in parts]

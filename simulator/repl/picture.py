@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from utak.geometry.kernels.arrays import Bools, Floats
-from utak.kb.language.atoms import atom_parts
+from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled
 
@@ -40,8 +40,10 @@ class _Facts:
 
     def __init__(self, facts: Iterable[str]) -> None:
         self._rows: dict[tuple[str, int], list[_Row]] = defaultdict(list)
-        for name, arguments in map(atom_parts, facts):
-            self._rows[name, len(arguments)].append(tuple(arguments))
+        for fact in facts:
+            for name, arguments in (atom_parts(text) for text in (fact, long_form(fact)) if text):
+                if arguments not in self._rows[name, len(arguments)]:
+                    self._rows[name, len(arguments)].append(tuple(arguments))
 
     def rows(self, name: str, arity: int, thing: str = "") -> list[_Row]:
         """Return the arguments of all facts of a predicate, or of those that begin with a thing."""
