@@ -57,10 +57,9 @@ class FactExplainer:
         long = long_form(fact)
         if long in self.record.steps[step].fact_set:
             known = self.reason(long, step)
-            return Reason(
-                fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", (known,) * bool(known)
-            )
-        below = self._below(fact, name, arguments, step)
+            below = [] if known is None else [known]
+        else:
+            below = self._below(fact, name, arguments, step)
         return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:

@@ -179,7 +179,7 @@ def _plan_reasons(
 
 def _believed(record: Record, step: int, atom: str) -> list[str]:
     """Return the believed fact that says what an atom says, with its confidence if it has one; [] for none."""
-    facts = record.steps[step].long_facts
+    facts = record.steps[step].long_facts if record.steps else ()
     return [fact for fact in facts if fact == atom or fact.startswith(f"{atom[:-1]},")][:1]
 
 

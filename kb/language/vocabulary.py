@@ -189,7 +189,7 @@ MEANT_ARGUMENT = pattern_argument("object, door or room", "[odr][0-9]+", "o1")
 TASK_PARAMETER_ARGUMENT = ArgumentType("parameter of the task", NAME_ARGUMENT.check)  # a name that start.lp introduces
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
-REGION_ARGUMENT = pattern_argument("region of the map", "part[0-9]+", "part1")  # a region that perception names
+MAP_REGION_ARGUMENT = pattern_argument("region of the map", "part[0-9]+", "part1")  # a region that perception names
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
 LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
@@ -296,8 +296,8 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("corner", 4): _uncertain(
         word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER
     ),
-    ("region", 3): _uncertain(REGION_ARGUMENT, word_argument("state", ("zero", "nonzero"))),
-    ("part_of", 2): BeliefPredicate((REGION_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
+    ("region", 3): _uncertain(MAP_REGION_ARGUMENT, word_argument("state", ("zero", "nonzero"))),
+    ("part_of", 2): BeliefPredicate((MAP_REGION_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
     ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("junction", 4): BeliefPredicate(
         (JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN

@@ -1,15 +1,16 @@
-"""How certain the facts about places are: in which room a thing lies, what touches what, which doors and corners are.
+"""The confidence of facts about places: rooms of things, what touches what, doors, their widths, and corners.
 
 Percent. 100 is stated only of what no completion of the map can change, 0 only of what cannot be: whatever lies between
 them is at least 1 and at most 99. Arrays are [row, column] on those of the model's view; points are (x, y) in squares.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats
@@ -23,7 +24,7 @@ from utak.kb.world.model import ROOT_NODE, VERGE_NODE, Node, WorldModel
 from utak.kb.world.rooms import NO_ROOM, Door, Rooms
 
 MIDDLE_MARGIN = 1.0  # squares: each side of an outline lies less than that within its squares, so its middle does, too
-WIDEST = math.hypot(MAX_TABLE_SIDE, MAX_TABLE_SIDE)  # squares: no line on a table is longer; derived
+MAX_DOOR_WIDTH = math.hypot(MAX_TABLE_SIDE, MAX_TABLE_SIDE)  # squares: no line on a table is longer; derived
 Box = tuple[float, float, float, float]  # west, south, east, north; in squares, frame of the view's arrays
 
 
@@ -42,7 +43,7 @@ def percent(chance: float, certain: bool) -> int:
 
 
 class _Body(NamedTuple):
-    """Where a thing, the verge or the robot may be, on a part of the view."""
+    """A thing, the verge or the robot: the squares that it may cover, on a part of the view."""
 
     south: int  # the row and the column of the part's square [0, 0]; may be negative
     west: int
@@ -54,16 +55,17 @@ class _Body(NamedTuple):
         return _Body(self.south - 1, self.west - 1, _greatest_beside(self.chance), _greatest_beside(self.sure))
 
 
-def _greatest_beside(values: Floats | Bools) -> Floats | Bools:
+def _greatest_beside(values: NDArray[Any]) -> NDArray[Any]:
     """Return the greatest value in the 3 x 3 squares about each square, one square further to each side."""
     rows, columns = values.shape
     padded = np.pad(values, 2)
     parts = [padded[i : i + rows + 2, j : j + columns + 2] for i in range(3) for j in range(3)]
-    return np.maximum.reduce(parts)
+    greatest: NDArray[Any] = np.maximum.reduce(parts)
+    return greatest
 
 
 class Chances:
-    """How certain the facts about places of one world model are."""
+    """The confidence of the facts about places of one world model."""
 
     def __init__(self, model: WorldModel, rooms: Rooms) -> None:
         self.model, self.rooms = model, rooms
@@ -97,10 +99,11 @@ class Chances:
 
     def _middle_box(self, node: Node) -> tuple[Box, bool]:
         """Return where the middle of an object may be, whatever open squares it covers."""
-        row, column = node.patch.south - self.model.view.south - 1, node.patch.west - self.model.view.west - 1
         body = self._body(node)
         sides = [_ends_of_mean(body, axis) for axis in (1, 0)]
-        (west, east), (south, north) = ((start + low, start + high) for start, (low, high) in zip((column, row), sides))
+        (west, east), (south, north) = (
+            (start + low, start + high) for start, (low, high) in zip((body.west, body.south), sides, strict=True)
+        )
         margin = MIDDLE_MARGIN
         return (west - margin, south - margin, east + margin, north + margin), bool(body.sure.any())
 
@@ -156,10 +159,14 @@ class Chances:
         sure = own & self._part(self._surely_occupied, south, west, mask.shape)
         return _Body(south, west, np.where(mask | ring, chance, 0.0), sure)
 
-    def _part(self, values: Floats | Bools, south: int, west: int, shape: tuple[int, int], beyond: float = 0) -> Floats:
+    def _part(
+        self, values: NDArray[Any], south: int, west: int, shape: tuple[int, ...], beyond: float = 0
+    ) -> NDArray[Any]:
         """Return the part of an array at a row and a column; squares outside of the array have the value `beyond`."""
         found = np.full(shape, beyond, values.dtype)
-        rows, columns = (slice(max(at, 0), min(at + n, end)) for at, n, end in zip((south, west), shape, values.shape))
+        rows, columns = (
+            slice(max(at, 0), min(at + n, end)) for at, n, end in zip((south, west), shape, values.shape, strict=True)
+        )
         if rows.start < rows.stop and columns.start < columns.stop:
             inner = values[rows, columns]
             row, column = rows.start - south, columns.start - west
@@ -191,7 +198,8 @@ class Chances:
             for piece in self.model.unfelt_pieces:
                 sure &= ~piece
         felt = [square for square, colour in self.model.felt.items() if colour == VERGE_TOUCH_COLOUR]
-        return sure | (self.model.squares(felt) & self._surely_occupied)
+        found: Bools = sure | (self.model.squares(felt) & self._surely_occupied)
+        return found
 
     def _without(self, verge: _Body, node: Node | None, about: _Body) -> _Body:
         """Return the part of the verge about a thing, without the squares of the thing itself."""
@@ -243,11 +251,11 @@ class Chances:
                 else:
                     most = min(most, *reach)
         walls = self._wall_beyond(door.a, -along), self._wall_beyond(door.b, along)
-        widest = max((math.dist(p, q) for p in walls[0] for q in walls[1]), default=WIDEST)
+        widest = max((math.dist(p, q) for p in walls[0] for q in walls[1]), default=MAX_DOOR_WIDTH)
         return Widths(max(0.0, most - least), max(widest, door.width))
 
     def _wall_beyond(self, end: XY, outward: Floats) -> Sequence[XY]:
-        """Return the corners of the first square that is surely occupied from an end of a door outwards; () for none."""
+        """Return the corners of the first surely occupied square from an end of a door outwards; () for none."""
         x, y = end
         while all(-1 <= value <= size for value, size in zip((y, x), self._surely_occupied.shape, strict=True)):
             rows, columns = jamb(self._surely_occupied, (x, y))

@@ -274,7 +274,7 @@ def _door_facts(door: Door, model: WorldModel, chances: Chances) -> Iterator[str
     share = chances.of_door(door, widths)
     yield f"door({door.name},{share})"
     yield f"width({door.name},{hundredths(door.width)})"
-    least, most = (round_(FACT_UNITS_PER_SQUARE * width) for round_, width in zip((math.floor, math.ceil), widths))
+    least, most = math.floor(FACT_UNITS_PER_SQUARE * widths.least), math.ceil(FACT_UNITS_PER_SQUARE * widths.most)
     yield f"width({door.name},{least},{most})"
     ends = [hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
     yield f"threshold({door.name},{','.join(map(str, ends))})"

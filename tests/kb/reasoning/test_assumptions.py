@@ -15,6 +15,8 @@ REACH = {
     "shape(o1, square, 90)": ("shape(o1,square,90).", (), ("shapes",)),
     "bound(x, o2).": ("bind(x,o2) :- wanted(x), candidate(o2,_).", (), ("reconciliation",)),
     "colour(o1, r, 99).": ("has(o1,colour,r,99) :- candidate(o1,_).", ("colour(o1,r,99).",), ("reconciliation",)),
+    "shape(o1, square)": ("shape(o1,square,100).", (), ("shapes",)),
+    "colour(o1, r).": ("has(o1,colour,r,100) :- candidate(o1,_).", ("colour(o1,r,100).",), ("reconciliation",)),
     "movable(o1, 0).": ("fixed(o1) :- candidate(o1,_).", ("movable(o1,0).",), ("reconciliation",)),
     "movable(o1, 90).": ("", ("movable(o1,90).",), ()),
     "door(d9).": ("", ("door(d9).",), ()),
