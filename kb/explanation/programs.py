@@ -22,7 +22,8 @@ from utak.kb.tracing.syntax import JsonValues, ProgramPart
 HELPING_PREFIX = "trace__"  # begins the names of the atoms that helping rules derive
 BELIEF = "belief"  # the encoding that declares the believed facts, over which the rules of queries reason
 OBJECT_RULE = "object(N) :- kind(N, object, C)."  # the meaning of object(N) in queries
-QUERY_PARTS = (ProgramPart("queries", 1, OBJECT_RULE),)
+SHORT_FORMS = "".join(f" #defined {name}/{arity}." for (name, arity), one in BELIEF_PREDICATES.items() if one.long)
+QUERY_PARTS = (ProgramPart("queries", 1, f"{OBJECT_RULE}{SHORT_FORMS}"),)
 
 
 # Requests that may take any time without users' rules, too: where facts may change, clingo grounds a sum for each set
@@ -180,7 +181,7 @@ def with_short_forms(
         long = words.get(declared.long) if declared.long is not None else None
         if long is not None:
             holds = long.holds.replace(f" with {{{long.variables[-1]}}} percent", "")
-            known.setdefault(signature, PredicateWords(long.name, long.variables[:-1], holds, ""))
+            known.setdefault(signature, PredicateWords(long.name, long.variables[:-1], holds, f"it is not known that {holds}"))
     return known
 
 
