@@ -206,7 +206,7 @@ class FactExplainer:
             for atom in call.answer or ():
                 kind, (neck, *_) = atom_parts(atom)
                 if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == ends:
-                    return [self.prove(call, atom, number)]
+                    return [self.prove(call, atom, number), *_door_doubts(name, arguments, atom, step)]
         return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
@@ -281,6 +281,14 @@ class FactExplainer:
         near = did_you_mean(fact, [other for other in self.record.steps[step].facts if other.startswith(f"{name}(")])
         hint = near or "whynot tells what is missing"
         return BadInputError.about("why", fact, f"this is not believed at step {step}", hint)
+
+
+def _door_doubts(name: str, arguments: tuple[str, ...], chosen: str, step: int) -> list[Reason]:
+    """Return why a door is believed less surely than rooms.lp has it; [] where it is not."""
+    if name not in ("door", "connects") or arguments[-1] == atom_parts(chosen)[1][-1]:
+        return []
+    doubts = "a square on its line, a wall at its ends, or how wide it and the floor beside it are"
+    return [Reason("it is not beyond doubt", f"this is not settled: {doubts}", ReasonKind.MEASURED, f"step {step}")]
 
 
 def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
