@@ -181,7 +181,8 @@ def with_short_forms(
         long = words.get(declared.long) if declared.long is not None else None
         if long is not None:
             holds = long.holds.replace(f" with {{{long.variables[-1]}}} percent", "")
-            known.setdefault(signature, PredicateWords(long.name, long.variables[:-1], holds, f"it is not known that {holds}"))
+            absent = f"it is not known that {holds}"
+            known.setdefault(signature, PredicateWords(long.name, long.variables[:-1], holds, absent))
     return known
 
 

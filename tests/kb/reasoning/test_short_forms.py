@@ -8,8 +8,10 @@ from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.reasoning.query import QueryEngine
 
 FACTS = [
-    "node(org).", "node(verge).", "kind(org,utak,100).", "kind(org,utak).", "kind(o1,object,100).", "kind(o1,object).", "kind(o2,object,80).",
-    "shape(o1,square,90).", "shape(o1,disc,0).", "movable(o1,99).", "room(r1).", "room(r2).", "in(org,r1,100).", "in(org,r1).",
+    "node(org).", "node(verge).", "kind(org,utak,100).", "kind(org,utak).",
+    "kind(o1,object,100).", "kind(o1,object).", "kind(o2,object,80).",
+    "shape(o1,square,90).", "shape(o1,disc,0).", "movable(o1,99).", "room(r1).", "room(r2).",
+    "in(org,r1,100).", "in(org,r1).",
     "in(o1,r1,60).", "in(o1,r2,40).", "door(d1,100).", "door(d1).", "door(d2,30).", "connects(d1,r1,r2,100).",
     "connects(d1,r1,r2).", "width(d1,400).", "width(d1,400,608).", "corner(northeast,500,700,80).",
     "adjacent(org,o1,100).", "adjacent(org,o1).", "adjacent(o1,org,100).", "adjacent(o1,org).", "adjacent(o1,o2,40).",

@@ -1,4 +1,4 @@
-"""Facts with a confidence: their short forms, what excludes each other, and what is symmetric; in drawn and real worlds."""
+"""Facts with a confidence: their short forms, what excludes each other, and what is symmetric, in drawn worlds."""
 
 from collections import defaultdict
 from collections.abc import Sequence
