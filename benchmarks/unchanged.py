@@ -1,11 +1,12 @@
 """Episodes before and after a change that must alter no decision: written by each checkout, then compared.
 
     python -m benchmarks.unchanged write FOLDER [--count N] [--seed S] [--noises S,S] [--jobs J]    in each checkout
-    python -m benchmarks.unchanged compare BEFORE AFTER
+    python -m benchmarks.unchanged compare BEFORE AFTER [--commands]
 
 `write` runs all examples, and random worlds of every kind of benchmarks.worlds.odd and of the plain and the wide kind
 of benchmarks.worlds.makers, each with each of the noises. `compare` reads the files as JSON. It leaves out `why`
-of the steps and `reason` of the result, which are sentences for people. It exits with 1 when anything else differs.
+of the steps and `reason` of the result, which are sentences for people; with --commands `belief`, too, for a change of
+the facts alone. It exits with 1 when anything else differs.
 """
 
 import argparse
@@ -59,26 +60,28 @@ def run(job: Job) -> str:
     return file.name
 
 
-def without_sentences(file: Path) -> list[str]:
-    """Return the lines of an episode without `why` and `reason`."""
+def compared_lines(file: Path, facts: bool = True) -> list[str]:
+    """Return the lines of an episode without `why` and `reason`, and without `belief` unless `facts` are compared."""
     lines = []
     for text in file.read_text().splitlines():
         line = json.loads(text)
         line.pop("why", None)
+        if not facts:
+            line.pop("belief", None)
         if "result" in line:
             line["result"].pop("reason", None)
         lines.append(json.dumps(line))
     return lines
 
 
-def differences(before: Path, after: Path) -> Iterator[str]:
+def differences(before: Path, after: Path, facts: bool = True) -> Iterator[str]:
     """Yield a sentence for each episode that differs between the two folders."""
     names = {file.name for folder in (before, after) for file in folder.glob("*.jsonl")}
     for name in sorted(names):
         if not (before / name).exists() or not (after / name).exists():
             yield f"{name}: in one folder only"
             continue
-        old, new = without_sentences(before / name), without_sentences(after / name)
+        old, new = compared_lines(before / name, facts), compared_lines(after / name, facts)
         if old != new:
             first = next((i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
             yield f"{name}: differs from line {first + 1} on, of {len(old)} and {len(new)}"
@@ -97,7 +100,7 @@ def write(given: argparse.Namespace) -> int:
 
 def compare(given: argparse.Namespace) -> int:
     """Print what differs and how many episodes were compared."""
-    found = list(differences(given.before, given.after))
+    found = list(differences(given.before, given.after, not given.commands))
     for sentence in found:
         print(sentence)
     total = len(list(given.before.glob("*.jsonl")))
@@ -133,6 +136,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     comparing = parts.add_parser("compare", help="compare the episodes of two folders")
     comparing.add_argument("before", type=Path)
     comparing.add_argument("after", type=Path)
+    comparing.add_argument(
+        "--commands", action="store_true", help="leave out what is believed: commands and truth alone"
+    )
     comparing.set_defaults(do=compare)
     given = parser.parse_args(arguments)
     return int(given.do(given))

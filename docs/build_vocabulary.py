@@ -96,7 +96,23 @@ def section(path: Path) -> str:
         role = f" **{entry.role}**" if entry.role else ""
         lines.append(f"- `{entry.form}`{role} {entry.text}")
         lines += [f"  - {argument}" for argument in entry.arguments]
+        if path.stem == FIRST and (short := short_entry(entry)):
+            lines.append(f"- `{short}`{role} {short_text(entry)}")
     return "\n".join(lines) + "\n"
+
+
+def short_entry(entry: Entry) -> str:
+    """Return the short form of a predicate of the world model as it is written; "" where it has none."""
+    sys.path.insert(0, str(ROOT))
+    from utak.kb.language.vocabulary import BELIEF_PREDICATES
+
+    declared = BELIEF_PREDICATES.get(entry.signature)
+    return f"{entry.form.rpartition(',')[0]})" if declared is not None and declared.short else ""
+
+
+def short_text(entry: Entry) -> str:
+    """Return what the short form of a predicate says."""
+    return f"It is known: `{entry.form.rpartition(',')[0]}, 100)`."
 
 
 def files_section() -> str:
@@ -137,6 +153,8 @@ def questions_section() -> str:
     for (name, arity), declared in BELIEF_PREDICATES.items():
         but = f", but for {', '.join(sorted(declared.settled))}" if declared.settled else ""
         turns = "between 0 and 100 it may turn out otherwise" if declared.confident else ""
+        if declared.long is not None:
+            turns = f"it may hold where `{declared.long[0]}/{declared.long[1]}` is between 0 and 100"
         lines.append(f"| `{name}/{arity}` | {words[declared.open]}{but} | {turns} |")
     return "\n".join(lines) + "\n"
 

@@ -53,7 +53,7 @@ def test_a_misspelt_predicate_is_an_error(tmp_path: Path) -> None:
         solve([interpretation, rules], ["region(a,zero,100)"])
 
 
-@pytest.mark.parametrize("rule", ["lost(X) :- kind(X, verge).", "lost(X) :- kind(X, verge, 99)", "lost(X) :- ."])
+@pytest.mark.parametrize("rule", ["lost(X) :- rim(X, verge).", "lost(X) :- kind(X, verge, 99)", "lost(X) :- ."])
 def test_a_wrong_arity_and_a_syntax_error_are_errors(tmp_path: Path, rule: str) -> None:
     rules = tmp_path / "rules.lp"
     rules.write_text(f"{rule}\n#show lost/1.\n")

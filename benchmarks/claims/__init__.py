@@ -9,5 +9,6 @@ row       the result of one world
 run       one world from its folder to its row
 table     the table of all results
 report    a page about the worlds that went wrong
+true_facts  a program of its own: facts that are stated as known and contradict the table
 __main__  the program
 """

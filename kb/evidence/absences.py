@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 
-from utak.kb.evidence.beliefs import FactExplainer, plain_fact
+from utak.kb.evidence.beliefs import FactExplainer, plain_fact, with_node
 from utak.kb.evidence.inputs import Given, input_reason
 from utak.kb.evidence.plans import TASK_PLAN_NAMES, planned_choice
 from utak.kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
 from utak.kb.evidence.reason import Reason, ReasonKind
+from utak.kb.evidence.record import RecordedStep
 from utak.kb.explanation.query_absence import explain_query_absence
 from utak.kb.explanation.values import Absence
 from utak.kb.explanation.whynot import explain_absence
-from utak.kb.language.atoms import atom_parts
+from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
@@ -39,6 +40,8 @@ class AbsenceExplainer:
             return self._no_object(wanted, arguments[0], step)
         if signature not in BELIEF_PREDICATES:
             return self._not_derived(wanted, signature, step)
+        if long := long_form(wanted, "C"):
+            return self._not_known(wanted, long, step)
         for call, atom, number in self._decisions(wanted, step):
             return self._absence(wanted, step, call, atom, number)
         return self._instead(wanted, step)
@@ -52,9 +55,24 @@ class AbsenceExplainer:
         because = f"object({node}) stands for kind({node}, object, C), which is not believed"
         return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {step}", (below,), below.data)
 
+    def _not_known(self, wanted: str, long: str, step: int) -> Reason:
+        """Return why a short form does not hold: how sure the fact is, or why it is not believed at all."""
+        start = f"{long.removesuffix('C)')}"
+        found = [fact for fact in self._facts.record.steps[step].facts if fact.startswith(start)]
+        below = tuple(reason for fact in found if (reason := self._facts.reason(fact, step)) is not None)
+        if not below:
+            below = (self.explain(long, step),)
+            return Reason(
+                f"not {wanted}", f"{long} is not believed", ReasonKind.NEGATION, f"step {step}", below, below[0].data
+            )
+        because = f"{wanted} is stated only with 100 percent; {', '.join(found)} is believed"
+        data = {"missing": [f"{start}100)"], "in_way": found, "partial": False, "found": True}
+        return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {step}", below, data)
+
     def _not_derived(self, wanted: str, signature: Signature, step: int) -> Reason:
         """Return why an atom of a predicate that users' rules define does not hold; BadInputError for others."""
         if signature in query_predicates(self._rule_files):
+            wanted = with_node(wanted)
             found = explain_query_absence(self._facts.record.steps[step].facts, wanted, self._rule_files)
             in_way = tuple(reason for fact in found.in_way if (reason := self._facts.reason(fact, step)) is not None)
             return self._reason_of(wanted, found, in_way, step)
@@ -82,13 +100,13 @@ class AbsenceExplainer:
                 yield call, f"shape({node},{shape},{_number_or(arguments[2], sure)})", number
         elif name == "bound" and len(arguments) == 2:
             yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
-        elif name in ("door", "connects", "width") and f"door({arguments[0]})" not in now.fact_set:
+        elif name in ("door", "connects", "width") and not _is_door(arguments[0], now):
             yield from self._opening(step)
             call, number = self._newest("rooms", step, "neck(")
             if call.facts:
                 more = sum(given.startswith("neck(") for given in call.facts)  # one more neck
                 yield call, f"door({more},100)", number
-        elif name == "corner" and len(arguments) == 3:
+        elif name == "corner":
             yield from self._corner(arguments, step)
         elif name == "plan" and len(arguments) == 2:
             chosen = planned_choice(self._facts.record, arguments[0], arguments[1], step)
@@ -120,7 +138,7 @@ class AbsenceExplainer:
         for _, call in self._facts.record.answers(step, "corners", step):
             for fact in call.facts:
                 number, *place = atom_parts(fact)[1]
-                if place == list(arguments[1:]):
+                if place == list(arguments[1:3]):
                     yield call, f"furthest({arguments[0]},{number})", step
 
     def _absence(self, fact: str, step: int, call: SolverCall, atom: str, made: int) -> Reason:
@@ -190,11 +208,16 @@ class AbsenceExplainer:
         """Yield the reasons of believed facts of the same predicate about the same thing."""
         name, arguments = atom_parts(fact)
         start = f"{name}({arguments[0]}," if len(arguments) > 1 else f"{name}("
-        facts = [other for other in self._facts.record.steps[step].facts if other.startswith(start)]
+        facts = [other for other in self._facts.record.steps[step].long_facts if other.startswith(start)]
         for other in facts[:INSTEAD_SHOWN]:
             reason = self._facts.reason(other, step)
             if reason is not None:
                 yield reason
+
+
+def _is_door(door: str, now: RecordedStep) -> bool:
+    """Return whether anything is believed of a door, with whatever confidence."""
+    return any(fact.startswith((f"door({door},", f"door({door})")) for fact in now.facts)
 
 
 def _is_offered(planned: str, call: SolverCall) -> bool:

@@ -15,7 +15,7 @@ from utak.kb.evidence.witness import (
     node_squares,
     seen_reason,
 )
-from utak.kb.language.atoms import atom_parts
+from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError, did_you_mean
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import thing_positions
@@ -54,7 +54,12 @@ class FactExplainer:
             return Reason(fact, words_of("belief", fact), ReasonKind.TASK, "the task")
         if name in TASK_PLAN_NAMES:
             return plan_fact_reason(self, fact, step)
-        below = self._below(fact, name, arguments, step)
+        long = long_form(fact)
+        if long in self.record.steps[step].fact_set:
+            known = self.reason(long, step)
+            below = [] if known is None else [known]
+        else:
+            below = self._below(fact, name, arguments, step)
         return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
@@ -103,7 +108,10 @@ class FactExplainer:
         if name == "segment":
             return self._segment_reasons(node, arguments, step)
         if name == "adjacent":
-            return self._facts([f"offset({ROOT_NODE},", f"rect({arguments[1]},"], step)
+            things = sorted(arguments[:2], key=lambda thing: thing != ROOT_NODE)
+            return self._facts([f"{'offset' if one == ROOT_NODE else 'rect'}({one}," for one in things], step)
+        if name in ("region", "part_of"):
+            return self._region_reasons(node, step)
         if name == "bound":
             return self._meaning_reasons(arguments[0], arguments[1], step)
         if name in ("offset", "in", "rect") and node == ROOT_NODE:
@@ -147,11 +155,18 @@ class FactExplainer:
     def _room_reasons(self, room: str, step: int) -> list[Reason]:
         """Return why a part of the floor is a room: the doors that bound it, as far as they are believed."""
         now = self.record.steps[step]
-        doors = [atom_parts(fact)[1][0] for fact in now.facts if fact.startswith("connects(") and f",{room}," in fact]
+        leading = [atom_parts(fact)[1] for fact in now.long_facts if fact.startswith("connects(")]
+        doors = [door for door, one, *_ in leading if one == room]
         ends = f"{room} ends at walls, at what was not seen yet, or at necks that are not sure enough to be doors"
         parted = [] if doors else [Reason("no believed door bounds it", ends, ReasonKind.MEASURED, f"step {step}")]
         floor = squares_reason(self.record, step, FLOOR_NODE)
-        return [*self._facts([f"door({door})" for door in doors], step), *parted, floor]
+        return [*self._facts([f"door({door}{end}" for door in doors for end in (",", ")")], step), *parted, floor]
+
+    def _region_reasons(self, region: str, step: int) -> list[Reason]:
+        """Return why there is a region of the map: the cells that show the squares of its node."""
+        facts = self.record.steps[step].facts
+        whole = next((atom_parts(fact)[1][1] for fact in facts if fact.startswith(f"part_of({region},")), FLOOR_NODE)
+        return [squares_reason(self.record, step, whole)]
 
     def _kind_reasons(self, node: str, kind: str, confidence: str, step: int) -> list[Reason]:
         """Return why a node is of a kind: the interpretation of its region, or that it was moved."""
@@ -165,7 +180,7 @@ class FactExplainer:
             found = self.decision("interpretation", f"kind({region},{kind},{confidence})", step, oldest=step)
             if found is not None:
                 return [found]
-            colour = next((fact for fact in now.facts if fact.startswith(f"colour({node},")), None)
+            colour = next((fact for fact in now.long_facts if fact.startswith(f"colour({node},")), None)
             if colour is not None:
                 return self._facts([colour], step)
         return [squares_reason(self.record, step, node)]
@@ -191,12 +206,12 @@ class FactExplainer:
             for atom in call.answer or ():
                 kind, (neck, *_) = atom_parts(atom)
                 if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == ends:
-                    return [self.prove(call, atom, number)]
+                    return [self.prove(call, atom, number), *_door_doubts(name, arguments, atom, step)]
         return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a corner is the furthest one: the answer of corners.lp with its place."""
-        side, east, north = arguments
+        side, east, north, *_ = arguments
         for number, call in self.record.answers(step, "corners"):
             for atom in call.answer or ():
                 kind, parts = atom_parts(atom)
@@ -257,7 +272,7 @@ class FactExplainer:
     def _facts(self, starts: list[str], step: int) -> list[Reason]:
         """Return the reasons of the believed facts that begin with some texts, in the order of these."""
         now = self.record.steps[step]
-        facts = [fact for start in starts for fact in now.facts if fact.startswith(start)]
+        facts = [fact for start in starts for fact in now.long_facts if fact.startswith(start)]
         return [reason for fact in facts if (reason := self.reason(fact, step)) is not None]
 
     def _not_believed(self, fact: str, step: int) -> BadInputError:
@@ -268,12 +283,20 @@ class FactExplainer:
         return BadInputError.about("why", fact, f"this is not believed at step {step}", hint)
 
 
+def _door_doubts(name: str, arguments: tuple[str, ...], chosen: str, step: int) -> list[Reason]:
+    """Return why a door is believed less surely than rooms.lp has it; [] where it is not."""
+    if name not in ("door", "connects") or arguments[-1] == atom_parts(chosen)[1][-1]:
+        return []
+    doubts = "a square on its line, a wall at its ends, or how wide it and the floor beside it are"
+    return [Reason("it is not beyond doubt", f"this is not settled: {doubts}", ReasonKind.MEASURED, f"step {step}")]
+
+
 def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
     """Return a believed fact in words. The floor counts from where the robot woke, and lies relative to the robot."""
     if name == "offset" and arguments[0] == FLOOR_NODE:
         east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[1:])
         return f"where the robot believes that it woke lies {east:g} squares east and {north:g} north of where it is"
-    if name == "kind" and arguments[0] in (FLOOR_NODE, VERGE_NODE):
+    if name == "kind" and len(arguments) == 3 and arguments[0] in (FLOOR_NODE, VERGE_NODE):
         return f"the squares of the {arguments[0]} are settled to {arguments[2]} percent on average"
     return words_of("belief", fact)
 
@@ -288,3 +311,13 @@ def plain_fact(fact: str) -> str:
     things = thing_positions((name, len(arguments)))
     named = [ROOT_NODE if at in things and argument == ROBOT else argument for at, argument in enumerate(arguments)]
     return f"{name}({','.join(named)})" if named else name
+
+
+def with_node(atom: str) -> str:
+    """Return an atom of a predicate that users' rules define for queries, with org for utak, as these hold it.
+
+    >>> with_node("alone(utak)")
+    'alone(org)'
+    """
+    name, arguments = atom_parts(atom)
+    return f"{name}({','.join(ROOT_NODE if one == ROBOT else one for one in arguments)})" if arguments else name

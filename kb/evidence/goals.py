@@ -95,7 +95,7 @@ def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], st
     for form in GOAL_WORDS[name].facts if name in GOAL_WORDS else PLACE_FACTS:  # a damaged episode has any name
         start = form.format(*nodes)
         if "(," not in start:
-            yield from (fact for fact in now.facts if fact.startswith(start))
+            yield from (fact for fact in now.long_facts if fact.startswith(start))
 
 
 def _node(beliefs: FactExplainer, argument: str, step: int) -> str:

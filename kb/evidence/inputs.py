@@ -9,6 +9,7 @@ from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
 from utak.kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
 from utak.kb.language.atoms import atom_parts
+from utak.kb.language.goal_words import ROBOT
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
@@ -163,16 +164,23 @@ def _plan_reasons(
     """Return the reasons of a fact that `task` is given: facts of the world model; [] for what geometry measured."""
     facts: list[str] = []
     if name in WORLD_INPUTS:
-        facts = [given.atom]
+        facts = _believed(record, given.step, given.atom)
     elif name == "thing":
-        facts = [fact for fact in record.steps[given.step].facts if fact.startswith(f"movable({arguments[0]},")]
+        facts = [fact for fact in record.steps[given.step].long_facts if fact.startswith(f"movable({arguments[0]},")]
     elif name == "lies" and arguments[1] == "here":
-        facts = [f"in({ROOT_NODE if arguments[0] == 'utak' else arguments[0]},{arguments[2]})"]
+        node = ROOT_NODE if arguments[0] == ROBOT else arguments[0]
+        facts = _believed(record, given.step, f"in({node},{arguments[2]})")
     found = [fact_reason(fact, given.step) for fact in facts]
     if name == "goal" and not any(found):  # no plan attains all goals, so the facts name none
         stated = [about for about in given.call.about if _names(about, arguments)]
         return [Reason(about, "", ReasonKind.TASK, "the task") for about in stated]
     return [reason for reason in found if reason is not None]
+
+
+def _believed(record: Record, step: int, atom: str) -> list[str]:
+    """Return the believed fact that says what an atom says, with its confidence if it has one; [] for none."""
+    facts = record.steps[step].long_facts if record.steps else ()
+    return [fact for fact in facts if fact == atom or fact.startswith(f"{atom[:-1]},")][:1]
 
 
 def _names(about: Any, arguments: tuple[str, ...]) -> bool:

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Any
 
 from utak.geometry.kernels.arrays import XY, Square
+from utak.kb.language.atoms import short_form
 from utak.kb.perception.frame import Frame
 from utak.kb.tracing.decisions import SolverCall
 
@@ -39,6 +40,12 @@ class RecordedStep:
         found = [str(fact).removesuffix(".") for fact in self._recorded("facts")]
         bindings = [f"bound({parameter},{node})" for parameter, node in sorted(self.bound.items())]
         return tuple(dict.fromkeys((*found, *bindings)))
+
+    @cached_property
+    def long_facts(self) -> tuple[str, ...]:
+        """The same facts without those that are the short form of another one."""
+        short = {text for fact in self.facts if (text := short_form(fact))}
+        return tuple(fact for fact in self.facts if fact not in short)
 
     @cached_property
     def fact_set(self) -> frozenset[str]:

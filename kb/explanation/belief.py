@@ -17,6 +17,7 @@ from utak.kb.explanation.programs import (
 from utak.kb.explanation.support import Support, supports_of
 from utak.kb.explanation.tree import ProofTrees
 from utak.kb.explanation.values import Proof, RuleInstance, RuleText
+from utak.kb.language.atoms import long_form, short_form
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.reasoning.query import request_entries
 from utak.kb.reasoning.rulebook import Statement
@@ -70,6 +71,7 @@ def _trees(
     supports = supports_of(found, units)
     for fact in facts:
         _add_object(fact, supports)
+        _add_other_form(fact, supports)
     trees = ProofTrees(
         supports, facts, found["atoms"], {**decision_program(BELIEF).words, **words}, (), _instance, _none
     )
@@ -92,6 +94,15 @@ def _add_object(fact: str, supports: dict[str, list[Support]]) -> None:
         unit = RuleUnit(OBJECT_TEXT, ("N", "C"), ("N", "C"), ({"kind": "atom", "text": "kind(N, object, C)"},), ((),))
         one = Support(-1, unit, (parts[0], parts[2]), (fact,), ((),), 0, ())
         supports.setdefault(f"object({parts[0]})", []).append(one)
+
+
+def _add_other_form(fact: str, supports: dict[str, list[Support]]) -> None:
+    """Add that a fact which is known holds in its short form, or in its long one."""
+    other = short_form(fact) or long_form(fact)
+    if other:
+        rule = RuleText("queries", 1, 1, f"{other} :- {fact}.", "rule", "What is stated without a confidence is known.")
+        unit = RuleUnit(rule, (), (), ({"kind": "atom", "text": fact},), ((),))
+        supports.setdefault(other, []).append(Support(-1, unit, (), (fact,), ((),), 0, ()))
 
 
 def _instance(support: Support) -> RuleInstance:

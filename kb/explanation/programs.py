@@ -11,6 +11,7 @@ from typing import NamedTuple
 from utak.kb.explanation.values import RuleInstance, RuleText
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.source_text import Source, read_source, source_from_bytes
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.reasoning.encodings import all_encodings, encoding_files, encoding_path
 from utak.kb.reasoning.rulebook import Statement
 from utak.kb.reasoning.sentences import PredicateWords, RuleWords, fill, read_sentences
@@ -21,7 +22,8 @@ from utak.kb.tracing.syntax import JsonValues, ProgramPart
 HELPING_PREFIX = "trace__"  # begins the names of the atoms that helping rules derive
 BELIEF = "belief"  # the encoding that declares the believed facts, over which the rules of queries reason
 OBJECT_RULE = "object(N) :- kind(N, object, C)."  # the meaning of object(N) in queries
-QUERY_PARTS = (ProgramPart("queries", 1, OBJECT_RULE),)
+SHORT_FORMS = "".join(f" #defined {name}/{arity}." for (name, arity), one in BELIEF_PREDICATES.items() if one.long)
+QUERY_PARTS = (ProgramPart("queries", 1, f"{OBJECT_RULE}{SHORT_FORMS}"),)
 
 
 # Requests that may take any time without users' rules, too: where facts may change, clingo grounds a sum for each set
@@ -59,7 +61,8 @@ class DecisionProgram:
         written = [ProgramPart(one.source.file, one.at[0], one.written) for one in self._users]
         self.parts: tuple[ProgramPart, ...] = (*written, *own, *(QUERY_PARTS if encoding == BELIEF else ()))
         found = self.ask({"task": "statements"})
-        rules, self.words = _rules_with_words(found["statements"], self._users, own)
+        rules, words = _rules_with_words(found["statements"], self._users, own)
+        self.words = with_short_forms(words) if encoding == BELIEF else words
         self.units = tuple(_unit(one, rules, found["statements"]) for one in found["units"])
         self.shown = frozenset((name, arity) for name, arity in found["shown"])
         self.declared = frozenset((name, arity) for name, arity in found["declared"])
@@ -167,6 +170,20 @@ def _rules_with_words(
     for one in found.values():
         words |= one.predicates
     return rules, words
+
+
+def with_short_forms(
+    words: Mapping[tuple[str, int], PredicateWords],
+) -> Mapping[tuple[str, int], PredicateWords]:
+    """Return how predicates of the world model read, with their short forms: as the long ones, without the percent."""
+    known = dict(words)
+    for signature, declared in BELIEF_PREDICATES.items():
+        long = words.get(declared.long) if declared.long is not None else None
+        if long is not None:
+            holds = long.holds.replace(f" with {{{long.variables[-1]}}} percent", "")
+            absent = f"it is not known that {holds}"
+            known.setdefault(signature, PredicateWords(long.name, long.variables[:-1], holds, absent))
+    return known
 
 
 def words_of_users(users: Sequence[Statement]) -> tuple[list[str], dict[tuple[str, int], PredicateWords]]:

@@ -7,6 +7,7 @@ from utak.kb.explanation.belief import explain_query_atom, query_response
 from utak.kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
 from utak.kb.explanation.values import Absence, Proof
 from utak.kb.explanation.whynot import change_in_words, least_change
+from utak.kb.language.atoms import long_form, short_form
 from utak.kb.language.diagnostics import SourceSpan
 from utak.kb.language.goal_words import CORNER_NAMES
 from utak.kb.language.terms import Number, Symbol, Term
@@ -69,6 +70,7 @@ def _proof_after(
 ) -> Proof | None:
     """Return why an atom certainly holds after a change of what is believed; None when it does not."""
     try:
-        return explain_query_atom([*(fact for fact in given if fact not in in_way), *missing], wanted, rule_files)
+        gone = {*in_way, *map(short_form, in_way), *map(long_form, in_way)}
+        return explain_query_atom([*(fact for fact in given if fact not in gone), *missing], wanted, rule_files)
     except ExplanationError:
         return None

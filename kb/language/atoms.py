@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
+
 
 def atom_parts(atom: str) -> tuple[str, tuple[str, ...]]:
     """Return the name and the arguments of an atom, each as text.
@@ -29,3 +31,30 @@ def _arguments(text: str) -> Iterator[str]:
                 yield text[start:at].strip()
                 start = at + 1
     yield text[start:].strip()
+
+
+def short_form(fact: str) -> str:
+    """Return the short form of a fact that is known, such as kind(o1,object) for kind(o1,object,100); "" for none.
+
+    Examples
+    --------
+    >>> short_form("in(o1,r2,100)"), short_form("in(o1,r2,99)"), short_form("rect(o1,0,0,100,100)")
+    ('in(o1,r2)', '', '')
+    """
+    name, _, arguments = fact.partition("(")
+    declared = BELIEF_PREDICATES.get((name, arguments.count(",") + 1))
+    if declared is None or not declared.short or not arguments.endswith(",100)"):
+        return ""
+    return f"{fact[: -len(',100)')]})"
+
+
+def long_form(fact: str, confidence: str = "100") -> str:
+    """Return the fact with a confidence of which a fact is the short form; "" for one that is no short form.
+
+    >>> long_form("in(o1,r2)"), long_form("in(o1,r2)", "C"), long_form("in(o1,r2,99)")
+    ('in(o1,r2,100)', 'in(o1,r2,C)', '')
+    """
+    name, arguments = atom_parts(fact)
+    declared = BELIEF_PREDICATES.get((name, len(arguments)))
+    is_short = declared is not None and declared.long is not None
+    return f"{name}({','.join([*arguments, confidence])})" if is_short else ""

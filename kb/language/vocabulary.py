@@ -1,6 +1,6 @@
 """The predicates of fact files and of the world model, with the types of their arguments (docs/files.md)."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -176,6 +176,9 @@ class BeliefPredicate(NamedTuple):
     confident: bool = False
     # The names of the subjects of which the world model states all facts of this predicate that will ever hold
     settled: frozenset[str] = frozenset()
+    short: bool = False  # whether it has a short form without the confidence, which holds where that is 100
+    long: Signature | None = None  # of a short form: the predicate with the confidence
+    symmetric: bool = False  # whether its first two arguments can be exchanged
 
 
 # A node of the world model.
@@ -186,6 +189,7 @@ MEANT_ARGUMENT = pattern_argument("object, door or room", "[odr][0-9]+", "o1")
 TASK_PARAMETER_ARGUMENT = ArgumentType("parameter of the task", NAME_ARGUMENT.check)  # a name that start.lp introduces
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
+MAP_REGION_ARGUMENT = pattern_argument("region of the map", "part[0-9]+", "part1")  # a region that perception names
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
 LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
@@ -250,15 +254,28 @@ TWO_POINTS = (LENGTH_ARGUMENT,) * 4  # (east, north) of one point, then of anoth
 
 def _property(*value: ArgumentType) -> BeliefPredicate:
     """Return the predicate of a property of objects, with its value and its confidence."""
-    types = (THING_ARGUMENT, *value, CONFIDENCE_ARGUMENT)
-    return BeliefPredicate(types, Openness.UNTOLD, confident=True, settled=NEVER_OBJECTS)
+    return _uncertain(THING_ARGUMENT, *value, open=Openness.UNTOLD)._replace(settled=NEVER_OBJECTS)
+
+
+def _uncertain(*types: ArgumentType, open: Openness = Openness.UNSEEN) -> BeliefPredicate:
+    """Return a predicate with a confidence behind arguments of some types, and with a short form without it."""
+    return BeliefPredicate((*types, CONFIDENCE_ARGUMENT), open, confident=True, short=True)
+
+
+def _with_short_forms(declared: Mapping[Signature, BeliefPredicate]) -> Iterator[tuple[Signature, BeliefPredicate]]:
+    """Yield predicates, and behind each its short form, if it has one."""
+    for (name, arity), one in declared.items():
+        yield (name, arity), one
+        if one.short:
+            kept = one._replace(arguments=one.arguments[:-1], confident=False, short=False, long=(name, arity))
+            yield (name, arity - 1), kept
 
 
 # The predicates of the world model (kb/asp/belief.lp), and object/1; by name and number of arguments.
-BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
+_DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("node", 1): BeliefPredicate((THING_ARGUMENT,), Openness.UNSEEN),
     ("object", 1): BeliefPredicate((THING_ARGUMENT,), Openness.UNSEEN),
-    ("kind", 3): BeliefPredicate((THING_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.UNSEEN, confident=True),
+    ("kind", 3): _uncertain(THING_ARGUMENT, KIND_ARGUMENT),
     ("child", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN, subject=1),
     ("offset", 3): BeliefPredicate((THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
     ("held", 1): BeliefPredicate((THING_ARGUMENT,), Openness.NEVER),
@@ -269,16 +286,19 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("shape", 3): _property(word_argument("shape", SHAPE_CLASSES)),
     ("colour", 3): _property(COLOUR_ARGUMENT),
     ("movable", 2): _property(),
-    ("adjacent", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Openness.UNTOLD, settled=frozenset({"org"})),
+    ("adjacent", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(settled=frozenset({"org"}), symmetric=True),
     ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),
-    ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Openness.UNSEEN),
-    ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
+    ("door", 2): _uncertain(DOOR_ARGUMENT),
+    ("connects", 4): _uncertain(DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT),
     ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
+    ("width", 3): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
     ("threshold", 5): BeliefPredicate((DOOR_ARGUMENT, *TWO_POINTS), Openness.UNSEEN),
-    ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
-    ("corner", 3): BeliefPredicate(
-        (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.NEVER
+    ("in", 3): _uncertain(THING_ARGUMENT, ROOM_ARGUMENT),
+    ("corner", 4): _uncertain(
+        word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER
     ),
+    ("region", 3): _uncertain(MAP_REGION_ARGUMENT, word_argument("state", ("zero", "nonzero"))),
+    ("part_of", 2): BeliefPredicate((MAP_REGION_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
     ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("junction", 4): BeliefPredicate(
         (JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
@@ -295,12 +315,13 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("possible", 1): BeliefPredicate((STATEMENT_ARGUMENT,), Openness.NEVER),
     **PLAN_PREDICATES,
 }
+BELIEF_PREDICATES: Mapping[Signature, BeliefPredicate] = dict(_with_short_forms(_DECLARED))
 
 
 def may_be_otherwise(name: str, subject: object) -> bool:
     """Return whether the confidence of a fact about a subject is the chance that it holds."""
-    # For outlines, the floor and the verge it is the share of their squares that is settled.
-    return name != "segment" and not (name == "kind" and str(subject) in NEVER_OBJECTS)
+    # For outlines, regions, the floor and the verge it is the share of their squares that is settled.
+    return name not in ("segment", "region") and not (name == "kind" and str(subject) in NEVER_OBJECTS)
 
 
 def thing_positions(signature: Signature) -> frozenset[int]:

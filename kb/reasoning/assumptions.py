@@ -22,7 +22,7 @@ from utak.kb.language.vocabulary import (
     hint_for,
     thing_positions,
 )
-from utak.kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_THERE, USER_RULE_INTERFACES
+from utak.kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_PREDICATES, READ_ONLY_THERE, USER_RULE_INTERFACES
 from utak.kb.reasoning.rulebook import (
     INTERFACE_PREDICATES,
     INTERNAL_PREDICATES,
@@ -38,12 +38,6 @@ EQUIVALENTS: Mapping[Signature, Callable[[Fact], str]] = {
     ("colour", 3): lambda fact: f"has({fact.args[0]},colour,{fact.args[1]},{fact.args[2]})",
     ("movable", 2): lambda fact: f"fixed({fact.args[0]})" if str(fact.args[1]) == "0" else "",
 }
-ENCODING_PREDICATES = frozenset(
-    signature
-    for name, interface in USER_RULE_INTERFACES.items()
-    for signature in interface
-    if signature not in READ_ONLY_THERE.get(name, ())
-)
 
 
 class Assumption(NamedTuple):
@@ -97,11 +91,10 @@ def _with_org(fact: Fact) -> Fact:
 
 def _assumed_fact(source: Source, fact: Fact, kb_files: Sequence[str]) -> Assumption:
     """Return the assumption of one fact of a text; raise BadInputError when it cannot be assumed."""
-    fact = _with_org(fact)
+    fact = _with_confidence(source, _with_org(fact))
     written = f"{fact}."
     signature = fact.signature
-    about_a_node = signature == ("kind", 3) and THING_ARGUMENT.check(fact.args[0]) is None
-    if signature in BELIEF_PREDICATES and (about_a_node or signature not in ENCODING_PREDICATES):
+    if signature in BELIEF_PREDICATES and _counts_for_queries(source, fact):
         types = {fact.name: BELIEF_PREDICATES[signature].arguments}
         problems = check_facts(source, [fact], types)
         if problems:
@@ -122,6 +115,30 @@ def _assumed_fact(source: Source, fact: Fact, kb_files: Sequence[str]) -> Assump
     if signature not in INTERFACE_PREDICATES and signature not in INTERNAL_PREDICATES:
         _require_own_predicate(source, fact, kb_files)
     return _rule(_placed(_guarded(fact), fact), written, (), kb_files)
+
+
+def _with_confidence(source: Source, fact: Fact) -> Fact:
+    """Return the long form of a fact in its short form where that has an effect beyond queries, else the fact."""
+    declared = BELIEF_PREDICATES.get(fact.signature)
+    if declared is None or declared.long is None:
+        return fact
+    long = Symbol(fact.name, (*fact.args, Number(100, fact.span)), fact.span)
+    return long if long.signature in EQUIVALENTS or not _counts_for_queries(source, long) else fact
+
+
+def _counts_for_queries(source: Source, fact: Fact) -> bool:
+    """Return whether a fact of the world model counts for queries alone: no encoding takes such a fact from rules."""
+    signature = fact.signature
+    if signature == ("kind", 3) and THING_ARGUMENT.check(fact.args[0]) is None:
+        return True
+    taking = [
+        interface[signature]
+        for name, interface in USER_RULE_INTERFACES.items()
+        if signature in interface and signature not in {*READ_ONLY_THERE.get(name, ()), *READ_ONLY_PREDICATES}
+    ]
+    refused = all(check_facts(source, [fact], {fact.name: slots}) for slots in taking)
+    believed = check_facts(source, [fact], {fact.name: BELIEF_PREDICATES[signature].arguments})
+    return not taking or (refused and not believed)
 
 
 def _require_own_predicate(source: Source, fact: Fact, kb_files: Sequence[str]) -> None:

@@ -125,7 +125,8 @@ def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
     try:
-        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in translate_rule(part)]
+        clauses = (clause for part in parts if part.ast_type == ASTType.Rule for clause in translate_rule(part))
+        return [rename_utak_to_org(clause) for clause in clauses]
     except ClauseError as error:
         raise RuleError(error) from None
 

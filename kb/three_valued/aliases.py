@@ -25,7 +25,8 @@ def rename_utak_to_org(clause: Clause) -> Clause:
         for part in (atom.parts[at] for at in _utak_arguments(atom))
         if isinstance(part, Variable)
     }
-    return replace(clause, body=_renamed(clause.body, kinds))
+    head = None if clause.head is None else _renamed(clause.head, kinds)
+    return replace(clause, head=head, body=_renamed(clause.body, kinds))
 
 
 def _utak_arguments(atom: Atom) -> list[int]:

@@ -33,8 +33,8 @@ class Beliefs:
         self._index: dict[tuple[Signature, int], dict[Value, list[FactRow]]] = {}
         for name, row in facts:
             self._rows.setdefault((name, len(row)), {})[row] = None
-            if name == "kind" and len(row) == 3 and str(row[1]) == "object":
-                self._rows.setdefault(OBJECT_SIGNATURE, {})[(row[0],)] = None
+            for other, said in _also_said((name, len(row)), row):
+                self._rows.setdefault(other, {})[said] = None
         self.known_names = frozenset(
             str(row[declared.subject])
             for signature, declared in BELIEF_PREDICATES.items()
@@ -101,7 +101,12 @@ class Beliefs:
             for row in self._stated(signature, [*fixed[:-1], None]):
                 if 0 < row[-1] < 100:
                     yield (*row[:-1], Unknown(0, 100))
-        yield from self._open_rows(signature, declared, fixed[declared.subject])
+        if declared.long is not None:
+            yield from (row[:-1] for row in self._stated(declared.long, [*fixed, None]) if 0 < row[-1] < 100)
+        if declared.symmetric:
+            yield from self._open_pairs(declared, fixed)
+        else:
+            yield from self._open_rows(declared.long or signature, declared, fixed[declared.subject])
 
     def _stated(self, signature: Signature, fixed: Sequence[Value]) -> Iterable[FactRow]:
         """Return the certain rows that agree with the first known argument; all of them when none is known."""
@@ -116,9 +121,20 @@ class Beliefs:
                 index.setdefault(row[at], []).append(row)
         return index.get(fixed[at], [])
 
+    def _open_pairs(self, declared: BeliefPredicate, fixed: Sequence[Value]) -> Iterator[FactRow]:
+        """Yield the rows of a symmetric predicate that may hold for things not seen yet, in either place."""
+        for at, other in ((0, 1), (1, 0)):
+            is_new = fixed[at] is None or str(fixed[at]) not in self.known_names
+            if is_new and not self.everything_seen and str(fixed[other]) not in declared.settled:
+                values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
+                values[at] = Unknown(new=True) if fixed[at] is None else fixed[at]
+                values[other] = Unknown() if fixed[other] is None else fixed[other]
+                yield tuple(values)
+
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
         """Yield the rows that may hold for things not seen yet, and for known things without such a fact."""
-        # None when it is open.
+        # signature : that of the facts, which have a confidence where the predicate is a short form.
+        # subject : None when it is open.
         if declared.open is Openness.NEVER:
             return
         if declared.open is Openness.UNBOUND:
@@ -131,7 +147,7 @@ class Beliefs:
         if declared.open is Openness.UNTOLD:
             for thing in self._objects if subject is None else [subject]:
                 known = str(thing) in self.known_names and str(thing) not in declared.settled
-                if known and not self._stated(signature, [thing] + [None] * (len(declared.arguments) - 1)):
+                if known and not self._stated(signature, [thing] + [None] * (signature[1] - 1)):
                     yield self._row(declared, thing)
 
     def _row(self, declared: BeliefPredicate, subject: Value) -> FactRow:
@@ -144,6 +160,24 @@ class Beliefs:
 def _as_symbol(value: Value) -> clingo.Symbol:
     """Return a value as a clingo symbol."""
     return clingo.Number(value) if isinstance(value, int) else value
+
+
+def _also_said(signature: Signature, row: FactRow) -> Iterator[tuple[Signature, FactRow]]:
+    """Yield what a fact says besides: object(N), its short or long form where it is known, itself the other way."""
+    declared = BELIEF_PREDICATES.get(signature)
+    if declared is None:
+        return
+    if signature == ("kind", 3) and str(row[1]) == "object":
+        yield OBJECT_SIGNATURE, row[:1]
+    rows = {signature: row}
+    if declared.short and row[-1] == 100:
+        rows[signature[0], signature[1] - 1] = row[:-1]
+    if declared.long is not None:
+        rows[declared.long] = (*row, 100)
+    for one, said in rows.items():
+        yield one, said
+        if declared.symmetric:
+            yield one, (said[1], said[0], *said[2:])
 
 
 def _includes(a: Value, b: Value) -> bool:

@@ -9,6 +9,7 @@ doors         the necks of the floor, and how surely each of them is a doorway
 rooms         doors, and the parts of the floor between them
 place_names   the names of doors and rooms, kept from one impression to the next
 corners       the corners of the known floor
+chances       the confidence of facts about places: rooms, contacts, doors, widths and corners
 pathgraph     the pathgraph of the believed floor, as facts
 evidence      what the world model rests on: explained fields, regions, necks of doors
 facts         the world model as facts, and as the `belief` of an episode

@@ -32,7 +32,7 @@ def evidence(
         "moved": [node.name for node in model.objects if node.moved],
         "necks": {
             door.name: [[round(v, 3) for v in model.place_to_utak(*end)] for end in (door.a, door.b)]
-            for door in rooms.sure
+            for door in rooms.doors
         },
     }
 

@@ -15,20 +15,24 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
+from utak.kb.language.atoms import short_form
 from utak.kb.language.goal_words import ROBOT
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.localisation.field_account import Accommodation
 from utak.kb.mapping.occupancy import OPEN
 from utak.kb.reasoning.interfaces import WORLD_FACTS_THERE
 from utak.kb.reasoning.user_rules import predicates_read
+from utak.kb.world.chances import Chances
 from utak.kb.world.corners import Corner
 from utak.kb.world.evidence import evidence
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
 from utak.kb.world.pathgraph import pathgraph_facts
-from utak.kb.world.rooms import Rooms
+from utak.kb.world.rooms import NO_ROOM, Door, Rooms
 
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
 SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention
 FELT_COLOUR_CONFIDENCE = 99  # percent: belief in a colour that was felt; convention
+SHORTENED = frozenset(name for (name, _), declared in BELIEF_PREDICATES.items() if declared.short)
 ROBOT_AS_NODE = re.compile(rf"\b{ROOT_NODE}\b")  # the robot where it is a node; plans call it utak
 MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movable: more likely it is verge
 
@@ -69,7 +73,7 @@ def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
     """Return for each node the first fact of kind/3 about it among sorted facts: for objects that they are objects."""
     found: dict[str, str] = {}
     for fact in facts:
-        if fact.startswith("kind("):
+        if fact.startswith("kind(") and fact.count(",") == 2:
             found.setdefault(fact[len("kind(") : fact.index(",")], fact)
     return found
 
@@ -81,17 +85,23 @@ def binding_facts(bound: Mapping[str, str], parameters: Iterable[str]) -> Iterat
 
 
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
-    """Yield the world model, its rooms, doors and corners as facts without their full stops."""
+    """Yield the world model, its rooms, doors and corners as facts without their full stops, with their short forms."""
+    for fact in _long_facts(model, places):
+        yield fact
+        if fact.endswith(",100)") and fact.partition("(")[0] in SHORTENED and (short := short_form(fact)):
+            yield short
+
+
+def _long_facts(model: WorldModel, places: Places) -> Iterator[str]:
+    """Yield the facts of the world model without the short forms of those that are known."""
     yield from _root_facts(model)
     parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
     whole = ((name, _mask_rings(mask, model)) for name, mask in parts if mask.any())
     yield from _outline_facts([*whole, *((node.name, _object_rings(node)) for node in model.objects)], model)
     for node in model.objects:
-        yield from _object_facts(node, model, places.rooms)
-    yield from _room_facts(model, places.rooms)
-    for side, corner in sorted(places.corners.items()):
-        east, north = model.place_to_utak(*corner.point)
-        yield f"corner({side},{hundredths(east)},{hundredths(north)})"
+        yield from _object_facts(node, model)
+    yield from _region_facts(model)
+    yield from _place_facts(model, places, Chances(model, places.rooms))
     yield from pathgraph_facts(model, places.rooms)
 
 
@@ -100,7 +110,12 @@ def facts_for_rules(encoding: str, rules: Sequence[Path], model: WorldModel, pla
     named = predicates_read(encoding, rules).intersection(name for name, _ in WORLD_FACTS_THERE[encoding])
     if not named:
         return ()
-    facts = [fact for fact in model_facts(model, places) if fact.partition("(")[0] in named]
+    known = {(name, arity) for name, arity in WORLD_FACTS_THERE[encoding] if name in named}
+    facts = [
+        fact
+        for fact in model_facts(model, places)
+        if (name := fact.partition("(")[0]) in named and (name, fact.count(",") + 1) in known
+    ]
     facts += [f"object({node.name})" for node in model.objects if "object" in named]
     facts += [ROBOT_AS_NODE.sub(ROBOT, fact) for fact in facts if ROBOT_AS_NODE.search(fact)]
     return tuple(dict.fromkeys(facts))
@@ -145,7 +160,7 @@ def colour_facts(name: str, colour: str | None) -> tuple[str, ...]:
     return () if colour is None else (f"colour({name},{colour},{FELT_COLOUR_CONFIDENCE})",)
 
 
-def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
+def _object_facts(node: Node, model: WorldModel) -> Iterator[str]:
     """Yield the facts of one object, its outline apart, without full stops."""
     name = node.name
     yield f"node({name})"
@@ -157,18 +172,15 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     yield f"offset({name},{hundredths(east)},{hundredths(north)})"
     yield from appearance_facts(node)
     yield f"movable({name},{node.movable if node.confidence >= MIN_OBJECT_CONFIDENCE else 0})"
-    row, column = model.view.locate(*node.patch.centre)
-    room = rooms.labels[row, column]
-    if room:
-        yield f"in({name},r{room})"
-    if _adjacent_to_robot(node, model):
-        yield f"adjacent({ROOT_NODE},{name})"
 
 
-def _adjacent_to_robot(node: Node, model: WorldModel) -> bool:
-    """Return whether an object may cover the robot's square or one of the 8 squares about it."""
-    row, column = math.floor(model.place[1]) - node.patch.south, math.floor(model.place[0]) - node.patch.west
-    return bool(node.patch.mask[max(row - 1, 0) : max(row + 2, 0), max(column - 1, 0) : max(column + 2, 0)].any())
+def _region_facts(model: WorldModel) -> Iterator[str]:
+    """Yield the regions of the map, and the node of which each is a part, without full stops."""
+    nodes = {node.region: node.name for node in model.objects}
+    for region in model.percept.regions:
+        yield f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})"
+        whole = VERGE_NODE if model.kinds.of(region.name, "verge") else FLOOR_NODE
+        yield f"part_of({region.name},{nodes.get(region.name, whole)})"
 
 
 def _object_rings(node: Node) -> list[Floats]:
@@ -235,19 +247,36 @@ def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list
     return [int(share) for share in settled.mean(axis=1)]
 
 
-def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    """Yield the facts of rooms and doors, without full stops."""
+def _place_facts(model: WorldModel, places: Places, chances: Chances) -> Iterator[str]:
+    """Yield the facts of rooms, doors and corners, of what lies in which room and what touches what."""
     # Rooms r1, r2, ... come first, in order, then the doors in the order of `rooms`.
+    rooms = places.rooms
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):
         yield f"room(r{room})"
         yield f"unseen(r{room},{unseen[room]})"
-    row, column = model.view.locate(*model.place)
-    if rooms.labels[row, column]:
-        yield f"in({ROOT_NODE},r{rooms.labels[row, column]})"
-    for door in rooms.sure:
-        yield f"door({door.name})"
-        yield f"width({door.name},{hundredths(door.width)})"
-        ends = [hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
-        yield f"threshold({door.name},{','.join(map(str, ends))})"
-        yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))
+    for node in (None, *model.objects):
+        name = ROOT_NODE if node is None else node.name
+        yield from (f"in({name},r{room},{share})" for room, share in chances.rooms_of(node))
+    for door in rooms.doors:
+        yield from _door_facts(door, model, chances)
+    for one, other, share in chances.adjacencies():
+        yield f"adjacent({one},{other},{share})"
+        yield f"adjacent({other},{one},{share})"
+    for side, corner in sorted(places.corners.items()):
+        east, north = model.place_to_utak(*corner.point)
+        yield f"corner({side},{hundredths(east)},{hundredths(north)},{chances.of_corner(corner)})"
+
+
+def _door_facts(door: Door, model: WorldModel, chances: Chances) -> Iterator[str]:
+    """Yield the facts of a door, without full stops."""
+    widths = chances.widths(door)
+    share = chances.of_door(door, widths)
+    yield f"door({door.name},{share})"
+    yield f"width({door.name},{hundredths(door.width)})"
+    least, most = math.floor(FACT_UNITS_PER_SQUARE * widths.least), math.ceil(FACT_UNITS_PER_SQUARE * widths.most)
+    yield f"width({door.name},{least},{most})"
+    ends = [hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
+    yield f"threshold({door.name},{','.join(map(str, ends))})"
+    if NO_ROOM not in door.sides:
+        yield from dict.fromkeys(f"connects({door.name},r{a},r{b},{share})" for a, b in (door.sides, door.sides[::-1]))

@@ -9,7 +9,7 @@ from dataclasses import replace
 from shapely.errors import ShapelyError
 
 from utak.kb.evidence.absences import AbsenceExplainer
-from utak.kb.evidence.beliefs import FactExplainer, plain_fact
+from utak.kb.evidence.beliefs import FactExplainer, plain_fact, with_node
 from utak.kb.evidence.cells import explain_cell
 from utak.kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
 from utak.kb.evidence.proving import (
@@ -166,6 +166,7 @@ class Questions:
             return self.beliefs.prove(call, atom, step)
         if signature not in BELIEF_PREDICATES and signature not in query_predicates(self._rule_files):
             raise BadInputError([unknown_predicate(atom, signature, self._rule_files)])
+        atom = with_node(atom)
         if _has_variables(atom):
             holding = [one for one in certain_atoms(facts, self._rule_files) if _fits(atom, one)]
             if not holding:

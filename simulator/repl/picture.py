@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from utak.geometry.kernels.arrays import Bools, Floats
-from utak.kb.language.atoms import atom_parts
+from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled
 
@@ -40,8 +40,10 @@ class _Facts:
 
     def __init__(self, facts: Iterable[str]) -> None:
         self._rows: dict[tuple[str, int], list[_Row]] = defaultdict(list)
-        for name, arguments in map(atom_parts, facts):
-            self._rows[name, len(arguments)].append(tuple(arguments))
+        for fact in facts:
+            for name, arguments in (atom_parts(text) for text in (fact, long_form(fact)) if text):
+                if arguments not in self._rows[name, len(arguments)]:
+                    self._rows[name, len(arguments)].append(tuple(arguments))
 
     def rows(self, name: str, arity: int, thing: str = "") -> list[_Row]:
         """Return the arguments of all facts of a predicate, or of those that begin with a thing."""
@@ -166,16 +168,16 @@ def _legend(known: _Facts, marks: Mapping[str, str], place: Sequence[int] | None
     """Yield the lines that say what the marks are, the unit and the frame."""
     if place is not None:
         east, north = (value / FACT_UNITS_PER_SQUARE for value in place)
-        rooms = "".join(f", in {room}" for _, room in known.rows("in", 2, "org"))
+        rooms = "".join(f", in {room}" for room in _rooms_of(known, "org"))
         yield f"{UTAK_MARK} the robot (utak, org in facts): east {east:g}, north {north:g}{rooms}"
     for node in sorted(marks, key=_number):
         yield f"{marks[node]} {node}: {', '.join(_said_of(known, node))}"
-    for (door,) in known.rows("door", 1):
+    for door, share in known.rows("door", 2):
         wide = "".join(
             f", {int(w) / FACT_UNITS_PER_SQUARE:g} wide" for _, w in known.rows("width", 2, door) if w.isdigit()
         )
-        sides = next((f" between {a} and {b}" for _, a, b in known.rows("connects", 3, door)), "")
-        yield f"{DOOR_MARK} {door}: a door{sides}{wide}"
+        sides = next((f" between {a} and {b}" for _, a, b, _ in known.rows("connects", 4, door)), "")
+        yield f"{DOOR_MARK} {door}: a door {share} %{sides}{wide}"
     side = grid.unit // FACT_UNITS_PER_SQUARE
     yield f"{FLOOR_MARK} floor, {VERGE_MARK} verge (walls), blank: not seen; a small letter: rather a wall than a thing"
     yield f"one character is {side} x {side} square{'s' * (side > 1)}; up is north, the way the robot faced on waking"
@@ -187,7 +189,13 @@ def _said_of(known: _Facts, node: str) -> Iterator[str]:
     yield from (f"an object {share} %" for _, kind, share in known.rows("kind", 3, node) if kind == "object")
     yield from (f"{shape} {share} %" for _, shape, share in known.rows("shape", 3, node))
     yield from (f"colour {colour}" for _, colour, _ in known.rows("colour", 3, node))
-    yield from (f"in {room}" for _, room in known.rows("in", 2, node))
+    yield from (f"in {room}" for room in _rooms_of(known, node))
     if known.rows("held", 1, node):
         yield "in hand"
     yield from (f"meant by {name}" for name, meant in known.rows("bound", 2) if meant == node)
+
+
+def _rooms_of(known: _Facts, node: str) -> list[str]:
+    """Return the rooms in which the middle of a node may lie, with the percent where there are several."""
+    found = [(room, share) for _, room, share in known.rows("in", 3, node)]
+    return [room for room, _ in found] if len(found) == 1 else [f"{room} {share} %" for room, share in found]

@@ -99,11 +99,12 @@ function drawBelief(at) {
       group.append(svg("path", { class: `edge ${kind.word}`, d: pathOf(lines, place, false), "stroke-opacity": rounded(0.15 + 0.85 * sure) }));
     }
   }
+  const doors = doorsOf(said);
   for (const [name, ends] of Object.entries(at.line.belief.necks || {})) {
     if (!Array.isArray(ends) || ends.length !== 2 || !ends.every(isPoint)) continue;
-    group.append(svg("path", { class: "door", d: pathOf([ends], place, false) }), label(at, ends, place, name));
+    group.append(svg("path", { class: "door", d: pathOf([ends], place, false), "stroke-opacity": rounded(0.15 + 0.85 * (doors.get(name) ?? 1)) }), label(at, ends, place, name));
   }
-  for (const [name, east, north] of said("corner", 3)) {
+  for (const [name, east, north] of said("corner", 4).concat(said("corner", 3).filter(([name]) => !said("corner", 4).some(([other]) => other === name)))) {
     const point = [hundredths(east), hundredths(north)];
     if (point.some(Number.isNaN)) continue;
     const [x, y] = place(point), size = 4 * at.unit;
@@ -133,6 +134,21 @@ function kindsOf(said) {
     if (!kinds.has(name) || kinds.get(name).sure < kind.sure) kinds.set(name, kind);
   }
   return kinds;
+}
+
+// How sure each door is, from 0 to 1; older episodes state sure doors alone.
+function doorsOf(said) {
+  return new Map([...said("door", 1).map(([name]) => [name, 1]), ...said("door", 2).map(([name, sure]) => [name, percent(sure)])]);
+}
+
+// The rooms in which the middle of each node may lie: [{ room, sure }]; older episodes state one room alone.
+function roomsOf(said) {
+  const rooms = new Map(said("in", 2).map(([name, room]) => [name, [{ room, sure: 1 }]]));
+  for (const [name, room, sure] of said("in", 3)) {
+    const others = (rooms.get(name) || []).filter((where) => where.room !== room);
+    rooms.set(name, [...others, { room, sure: percent(sure) }]);
+  }
+  return rooms;
 }
 
 // A node with its likeliest shape: "o2 l_shape 98".

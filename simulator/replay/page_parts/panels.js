@@ -76,18 +76,18 @@ function planPanel(at) {
 // Rooms, doors and things in words: what the map cannot show where it knows no place of them.
 function worldPanel(at) {
   const { said } = at, kinds = kindsOf(said), list = html("ul", { class: "plain" });
-  const here = new Map(said("in", 2));
+  const rooms = roomsOf(said), doorsSure = doorsOf(said), inPercent = ({ sure }) => (sure < 1 ? ` ${Math.round(100 * sure)}` : "");
   for (const [room] of said("room", 1)) {
-    const doors = said("connects", 3).filter(([, from]) => from === room).map(([door, , to]) => `${shown(door)} to ${shown(to)}`);
+    const doors = said("connects", 4).concat(said("connects", 3)).filter(([, from]) => from === room).map(([door, , to]) => `${shown(door)} to ${shown(to)}`).filter((text, at, all) => all.indexOf(text) === at);
     const unseen = said("unseen", 2).filter((args) => args[0] === room).map((args) => args[1])[0];
-    list.append(html("li", {}, html("b", {}, shown(room)), here.get("org") === room ? " (the robot is here)" : "", unseen ? `: ${shown(unseen)} squares unseen` : "", doors.length ? `; ${doors.join(", ")}` : ""));
+    list.append(html("li", {}, html("b", {}, shown(room)), (rooms.get("org") || []).some((where) => where.room === room) ? ` (the robot is here${inPercent(rooms.get("org").find((where) => where.room === room))})` : "", unseen ? `: ${shown(unseen)} squares unseen` : "", doors.length ? `; ${doors.join(", ")}` : ""));
   }
-  for (const [door, width] of said("width", 2)) list.append(html("li", {}, html("b", {}, shown(door)), `: a door ${rounded(hundredths(width))} squares wide`));
+  for (const [door, width] of said("width", 2)) list.append(html("li", {}, html("b", {}, shown(door)), `: a door${inPercent({ sure: doorsSure.get(door) ?? 1 })}, ${rounded(hundredths(width))} squares wide`));
   for (const [name, { word, sure }] of kinds) {
     if (["org", "floor", "verge"].includes(name)) continue;
     const shapes = said("shape", 3).filter((args) => args[0] === name && Number(args[2]) > 0).sort((a, b) => b[2] - a[2]).slice(0, 4).map((args) => `${shown(args[1])} ${shown(args[2])}`);
     const colour = said("colour", 3).filter((args) => args[0] === name).map((args) => shown(args[1]));
-    list.append(html("li", {}, html("b", {}, shown(name)), `: ${word} ${Math.round(100 * sure)}`, colour.length ? `, colour ${colour.join("/")}` : "", here.has(name) ? `, in ${shown(here.get(name))}` : "", shapes.length ? `; ${shapes.join(", ")}` : ""));
+    list.append(html("li", {}, html("b", {}, shown(name)), `: ${word} ${Math.round(100 * sure)}`, colour.length ? `, colour ${colour.join("/")}` : "", rooms.has(name) ? `, in ${rooms.get(name).map((where) => shown(where.room) + inPercent(where)).join(" or ")}` : "", shapes.length ? `; ${shapes.join(", ")}` : ""));
   }
   return list.children.length ? [list] : [html("p", { class: "quiet" }, "Nothing is believed yet.")];
 }

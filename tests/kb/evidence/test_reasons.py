@@ -276,7 +276,7 @@ def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questio
             elif name == "serves":
                 assert why.because == f"step {arguments[0]} of the plan is for goal {arguments[1]}"
             elif name == "room" and f"connects(d1,{arguments[0]}," in " ".join(facts):
-                assert below[0] == "door(d1)"
+                assert below[0].startswith("door(d1,")
 
 
 def test_the_middle_depth_lists_the_nearest_rivals_alone() -> None:

@@ -135,7 +135,7 @@ BAD = {
     "X = " + "-" * 5000 + "1": "it is nested too deep",
     "": "the query is empty",
     "shpe(X, Y, Z)": "did you mean shape?",
-    "shape(X, square)": "there is shape/3",
+    "shape(square)": "there is shape/2, shape/3",
     "shape(X": "query:1:1-7: error: syntax error",
     "object(X). object(Y)": "without a full stop",
     "object(X) :- node(X)": "syntax error",

@@ -119,7 +119,7 @@ WRONG = {
     "shape(o1,sqare,90).": "unknown shape sqare",
     "kind(R,verge,101) :- region(R,zero,_).": "a confidence must be from 0 to 100, not 101",
     "region(a,zero,100).": "region/3 says what there is, and rules add nothing to it",
-    "kind(R,verge) :- region(R,zero,_).": "rules0.lp:1:1-1: error: unknown predicate kind/2",
+    "kind(R,verge) :- region(R,zero,_).": "rules0.lp:1:1-1: error: this changes nothing",
     "p(X) :- knid(X,verge,1).": "did you mean kind?",
     "p(5000000000).": "rules0.lp:1:3-12: error: a number beyond 32 bits",
     "p(0x80000000).": "rules0.lp:1:3-12: error: a number beyond 32 bits",
@@ -200,7 +200,8 @@ def test_queries_can_use_own_predicates(tmp_path: Path) -> None:
 
         assert ask("wide(X)", 9) == [("o1",)]
         assert ask("small(X)", 9) == [("o2",)]
-        assert ask("near(org, X)", 0) == [("o1",), ("o2",)]
+        assert ask("near(org, X)", 0) == [("o1",), ("o2",), ("org",)]
+        assert ask("near(utak, o2)", 0) == ask("near(o2, utak)", 0) == "yes"
         assert ask("wide(o3)", 9) == "don't know"
         assert ask("wide(o3)", 0) == "no"
         assert ask("not wide(o3)", 9) == "don't know"

@@ -256,7 +256,7 @@ def test_what_is_in_hand_is_put_down_where_a_rule_leaves_no_plan_any_more(tmp_pa
 
 def test_the_robot_does_not_go_where_a_rule_leaves_it_no_plan(tmp_path: Path) -> None:
     """No door is closed, but no other room may be where the robot goes to."""
-    rules = rule_file(tmp_path, ":- occurs(arrive(P), T), lies(utak, P, R), in(utak, Q), R != Q.")
+    rules = rule_file(tmp_path, ":- occurs(arrive(P), T), lies(utak, P, R), in(utak, Q, C), C >= 50, R != Q.")
     episode = utak.Run(utak.Scenario.read(EXAMPLES / "go_next_room"), rules=[rules]).finish()
     assert episode.verdict == "limit" and f"{rules}:1" in episode.reason
     assert all(step.utak[0] < 21 for step in episode)

@@ -26,7 +26,7 @@ ROOM = [
     *box("o1", 2, 2, 4, 4),
     *box("o2", 8, 1, 9, 2),
     "kind(o1,object,95).", "kind(o2,object,20).", "kind(o2,verge,80).", "shape(o1,square,88).", "colour(o1,g,99).",
-    "offset(org,650,250).", "in(org,r1).", "door(d1).", "width(d1,200).", "connects(d1,r1,r2).",
+    "offset(org,650,250).", "in(org,r1).", "door(d1,80).", "width(d1,200).", "connects(d1,r1,r2,80).",
     "threshold(d1,1000,100,1000,500).", "bound(x,o1).", "held(o1).",
 ]  # fmt: skip
 DRAWN = """\
@@ -46,7 +46,11 @@ def test_floor_walls_objects_doors_and_utak_are_drawn() -> None:
     assert "east 6.5, north 2.5, in r1" in legend
     assert "A o1: an object 95 %, square 88 %, colour g, in hand, meant by x" in legend
     assert "b o2: an object 20 %" in legend
-    assert f"{DOOR_MARK} d1: a door between r1 and r2, 2 wide" in legend
+    older = [
+        {"door(d1,80).": "door(d1).", "connects(d1,r1,r2,80).": "connects(d1,r1,r2)."}.get(one, one) for one in ROOM
+    ]
+    assert f"{DOOR_MARK} d1: a door 100 % between r1 and r2, 2 wide" in "\n".join(draw_belief(older).legend)
+    assert f"{DOOR_MARK} d1: a door 80 % between r1 and r2, 2 wide" in legend
     assert "1 x 1 square" in legend
 
 

@@ -1,0 +1,125 @@
+"""Facts with a confidence: their short forms, what excludes each other, and what is symmetric, in drawn worlds."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.kb.drawings import known_model
+from utak.kb.language.atoms import atom_parts, long_form, short_form
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.world.chances import Chances, percent
+from utak.kb.world.corners import corners
+from utak.kb.world.facts import Places, model_facts
+from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import rooms_of
+
+LEFT, RIGHT, WALL = "b" + "." * 14 + "bb", "." * 14 + "b", "b" * 32
+ROWS = [WALL, *[LEFT + "b" + RIGHT[1:]] * 4, *["b" + "." * 30 + "b"] * 4, *["b...ggg" + LEFT[7:] + RIGHT] * 2]
+ROWS += ["b.hh..U" + LEFT[7:] + RIGHT, "b.hh..." + LEFT[7:] + RIGHT, LEFT + RIGHT, WALL]
+
+
+def stated(model: WorldModel) -> list[str]:
+    """The facts of a model."""
+    return list(model_facts(model, Places(rooms_of(model), corners(model))))
+
+
+def doubted(model: WorldModel, squares: Sequence[tuple[int, int]], chance: float) -> WorldModel:
+    """The same model with some squares open, each occupied with a chance."""
+    state, probability = model.view.state.copy(), model.view.probability.copy()
+    for row, column in squares:
+        state[row, column], probability[row, column] = OPEN, chance
+    return replace(model, view=model.view._replace(state=state, probability=probability))
+
+
+def check(facts: Sequence[str]) -> None:
+    """Check what holds of the facts of every step."""
+    known = set(facts)
+    assert len(known) == len(facts)
+    inside: dict[str, int] = defaultdict(int)
+    for fact in facts:
+        name, arguments = atom_parts(fact)
+        declared = BELIEF_PREDICATES[name, len(arguments)]
+        if declared.short:
+            assert 0 <= int(arguments[-1]) <= 100
+            assert (f"{name}({','.join(arguments[:-1])})" in known) == (arguments[-1] == "100")
+        if declared.long is not None:
+            assert long_form(fact) in known and short_form(long_form(fact)) == fact
+        if declared.symmetric:
+            assert f"{name}({','.join([arguments[1], arguments[0], *arguments[2:]])})" in known
+        if (name, len(arguments)) == ("in", 3):
+            inside[arguments[0]] += int(arguments[2])
+    assert all(share <= 100 for share in inside.values())
+    widths = {row[0]: int(row[1]) for one, row in map(atom_parts, facts) if one == "width" and len(row) == 2}
+    for one, row in map(atom_parts, facts):
+        if one == "width" and len(row) == 3:
+            assert int(row[1]) <= widths[row[0]] <= int(row[2])
+
+
+def test_what_is_known_completely_is_known() -> None:
+    facts = stated(known_model(ROWS))
+    check(facts)
+    assert {"adjacent(o1,o2)", "adjacent(o2,o1,100)", "adjacent(org,o2)", "adjacent(o2,org,100)"} <= {*facts}
+    assert {"in(org,r1)", "in(o1,r1,100)", "in(o2,r1)", "region(part1,zero)", "part_of(part1,floor)"} <= {*facts}
+    assert not any(fact.startswith(("adjacent(org,verge", "adjacent(org,o1", "adjacent(verge,o")) for fact in facts)
+    assert any(fact.startswith("width(d1,") for fact in facts)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(st.integers(0, 13), st.integers(0, 31)), max_size=30), st.floats(0.02, 0.98))
+def test_open_squares_make_facts_uncertain_and_never_contradict(squares: list[tuple[int, int]], chance: float) -> None:
+    model = known_model(ROWS)
+    doubtful, sure = stated(doubted(model, squares, chance)), set(stated(model))
+    check(doubtful)
+    for fact in doubtful:  # what is known in spite of doubt is so
+        if fact.startswith(("adjacent(", "in(")) and fact.endswith(",100)"):
+            assert fact in sure
+    for fact in sure:  # what is so is never excluded
+        if fact.startswith("adjacent(") and fact.endswith(",100)"):
+            assert any(other.startswith(fact[: -len("100)")]) for other in doubtful)
+
+
+def test_what_one_open_square_decides() -> None:
+    """An open square between two things counts with its probability."""
+    rows = [WALL, *["b" + "." * 30 + "b"] * 3, *["b..gg.hh" + "." * 23 + "b"] * 2, "b....U" + "." * 25 + "b", WALL]
+    model = known_model(rows)
+    assert "adjacent(o1,o2,30)" not in stated(model)
+    between = doubted(model, [(2, 5)], 0.3)
+    assert "adjacent(o1,o2,30)" in stated(between) and "adjacent(o1,o2)" not in stated(between)
+    assert "adjacent(o1,org)" in stated(between)
+
+
+def test_a_robot_that_is_lost_may_be_in_any_room() -> None:
+    lost = replace(known_model(ROWS), lost=True)
+    shares = [row for name, row in map(atom_parts, stated(lost)) if name == "in" and row[0] == "org"]
+    assert len(shares) > 1 and all(len(row) == 3 for row in shares)
+
+
+def test_nothing_is_known_of_a_map_in_doubt() -> None:
+    model = known_model(ROWS)
+    doubtful = stated(replace(model, view=model.view._replace(sure=False)))
+    check(doubtful)
+    places = ("adjacent", "in", "corner", "door", "connects")
+    assert not any(fact.endswith(",100)") for fact in doubtful if fact.partition("(")[0] in places)
+
+
+@pytest.mark.parametrize(
+    ("chance", "certain", "share"),
+    [(0.0, False, 0), (1e-9, False, 1), (0.5, False, 50), (1.0, False, 99), (1.0, True, 100)],
+)
+def test_percent(chance: float, certain: bool, share: int) -> None:
+    assert percent(chance, certain) == share
+
+
+def test_the_middle_of_a_thing_is_where_its_open_squares_leave_it() -> None:
+    """A thing beside a door may lie in either room while squares of it are open."""
+    model = known_model(ROWS)
+    rooms = rooms_of(model)
+    chances = Chances(doubted(model, [(3, c) for c in range(3, 6)], 0.4), rooms)
+    found = dict(chances.rooms_of(model.objects[0]))
+    assert sum(found.values()) <= 100 and found
+    assert all(room > 0 for room in found)
