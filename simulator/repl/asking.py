@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.reasoning.assumptions import canonical_facts
 from utak.kb.reasoning.query import MAX_ANSWER_ROWS, QueryAnswer
 from utak.simulator.repl.dialogue import Dialogue
@@ -22,6 +23,20 @@ def ask(dialogue: Dialogue, rest: str) -> None:
         _turn(dialogue, _row_pages(dialogue, rest, answer))
     else:
         dialogue.printer.styled(answer.kind, {"yes": "bold green", "no": "bold red"}.get(answer.kind, "bold yellow"))
+        if answer.kind == "don't know" and (longer := _forms_with_confidence(rest)):
+            dialogue.printer.note(f"{', '.join(longer)} also tell what is not known, with its confidence")
+
+
+def _forms_with_confidence(query: str) -> list[str]:
+    """Return the predicates with a confidence whose short forms a query names, such as door/2.
+
+    >>> _forms_with_confidence("door(D), connects(D, r1, R, C), not held(D)")
+    ['door/2']
+    """
+    found = re.findall(r"\b([a-z]\w*)\(((?:[^()]|\([^()]*\))*)\)", query)
+    named = {(name, len(re.sub(r"\([^()]*\)", "", inner).split(","))) for name, inner in found}
+    forms = (BELIEF_PREDICATES[one].long for one in sorted(named) if one in BELIEF_PREDICATES)
+    return [f"{name}/{arity}" for name, arity in filter(None, forms)]
 
 
 def facts(dialogue: Dialogue, rest: str) -> None:
