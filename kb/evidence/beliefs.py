@@ -1,5 +1,6 @@
 """Reasons for the facts of the world model: the rules that derived them, down to cells, touches and commands."""
 
+import re
 from collections.abc import Callable
 from typing import Protocol
 
@@ -21,6 +22,8 @@ from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import thing_positions
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
+
+PART_NAME = re.compile(r"(o\d+)_\d+")  # of a part of an object
 
 
 class AnswerProver(Protocol):
@@ -148,6 +151,8 @@ class FactExplainer:
             return [Reason("the robot is the root of the world model", "", ReasonKind.CONVENTION)]
         if name == "offset" and node in (FLOOR_NODE, VERGE_NODE):
             return [self._pose_reason(step)]
+        if (found := PART_NAME.fullmatch(node)) is not None:
+            return [squares_reason(self.record, step, found[1])]
         if name == "in":
             return [squares_reason(self.record, step, node), *self._facts([f"room({arguments[1]})"], step)]
         return [squares_reason(self.record, step, node)]
@@ -164,6 +169,8 @@ class FactExplainer:
 
     def _region_reasons(self, region: str, step: int) -> list[Reason]:
         """Return why there is a region of the map: the cells that show the squares of its node."""
+        if (found := PART_NAME.fullmatch(region)) is not None:
+            return [squares_reason(self.record, step, found[1])]
         facts = self.record.steps[step].facts
         whole = next((atom_parts(fact)[1][1] for fact in facts if fact.startswith(f"part_of({region},")), FLOOR_NODE)
         return [squares_reason(self.record, step, whole)]

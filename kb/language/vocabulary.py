@@ -182,7 +182,9 @@ class BeliefPredicate(NamedTuple):
 
 
 # A node of the world model.
-THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
+THING_ARGUMENT = pattern_argument(
+    "thing", "org|floor|verge|o[0-9]+(_[0-9]+)?", "o1, its part o1_1, floor, verge, or org, which is Utak"
+)
 # An object of the world model.
 OBJECT_ARGUMENT = pattern_argument("object", "o[0-9]+", "o1")
 MEANT_ARGUMENT = pattern_argument("object, door or room", "[odr][0-9]+", "o1")
@@ -190,6 +192,8 @@ TASK_PARAMETER_ARGUMENT = ArgumentType("parameter of the task", NAME_ARGUMENT.ch
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
 MAP_REGION_ARGUMENT = pattern_argument("region of the map", "part[0-9]+", "part1")  # a region that perception names
+# A region of the map, or a part of an object, such as a leg of an L.
+MAP_PART_ARGUMENT = pattern_argument("region or part", "part[0-9]+|o[0-9]+_[0-9]+", "part1 or o1_1")
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
 LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
@@ -298,7 +302,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
         word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER
     ),
     ("region", 3): _uncertain(MAP_REGION_ARGUMENT, word_argument("state", ("zero", "nonzero"))),
-    ("part_of", 2): BeliefPredicate((MAP_REGION_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
+    ("part_of", 2): BeliefPredicate((MAP_PART_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
     ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("junction", 4): BeliefPredicate(
         (JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN

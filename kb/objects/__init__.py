@@ -4,6 +4,7 @@ Modules in reading order:
 
 subcell_extent  how far the sides of an object lie within the squares in which it was seen
 shape_fit       the shape classes that fit the squares of a patch, measured by geometry
+parts           the parts of an outline, such as the legs of an L
 proportions     whether a rectangle is a square or a brick, as far as its extent is known
 held_object     an object that the robot has held: its outline, its place, and how exactly both are known
 touches         the colours that were felt, square by square

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from shapely import Polygon
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
@@ -20,6 +21,7 @@ from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.localisation.field_account import Accommodation
 from utak.kb.mapping.occupancy import OPEN
+from utak.kb.objects.parts import parts_of
 from utak.kb.reasoning.interfaces import WORLD_FACTS_THERE
 from utak.kb.reasoning.user_rules import predicates_read
 from utak.kb.world.chances import Chances
@@ -100,6 +102,7 @@ def _long_facts(model: WorldModel, places: Places) -> Iterator[str]:
     yield from _outline_facts([*whole, *((node.name, _object_rings(node)) for node in model.objects)], model)
     for node in model.objects:
         yield from _object_facts(node, model)
+        yield from _part_facts(node, model)
     yield from _region_facts(model)
     yield from _place_facts(model, places, Chances(model, places.rooms))
     yield from pathgraph_facts(model, places.rooms)
@@ -172,6 +175,28 @@ def _object_facts(node: Node, model: WorldModel) -> Iterator[str]:
     yield f"offset({name},{hundredths(east)},{hundredths(north)})"
     yield from appearance_facts(node)
     yield f"movable({name},{node.movable if node.confidence >= MIN_OBJECT_CONFIDENCE else 0})"
+
+
+def _part_facts(node: Node, model: WorldModel) -> Iterator[str]:
+    """Yield the parts of an object's outline, such as the legs of an L, without full stops."""
+    if node.polygon is None:
+        return
+    middle = np.array(model.frame.place_to_utak(*node.patch.centre))
+    for number, part in enumerate(_outline_parts(node.polygon), 1):
+        name = f"{node.name}_{number}"
+        ring = np.column_stack(model.frame.place_to_utak(*np.array(part.exterior.coords).T))
+        east, north = model.frame.place_to_utak(part.centroid.x, part.centroid.y) - middle
+        yield f"node({name})"
+        yield f"child({node.name},{name})"
+        yield f"part_of({name},{node.name})"
+        yield f"offset({name},{hundredths(east)},{hundredths(north)})"
+        yield f"rect({name},{','.join(str(hundredths(value)) for value in (*ring.min(0), *ring.max(0)))})"
+
+
+@lru_cache(maxsize=1024)
+def _outline_parts(outline: Polygon) -> tuple[Polygon, ...]:
+    """Return the parts of an outline, which stays the same over many steps."""
+    return parts_of(outline)
 
 
 def _region_facts(model: WorldModel) -> Iterator[str]:

@@ -188,6 +188,8 @@ def _said_of(known: _Facts, node: str) -> Iterator[str]:
     """Yield what is believed about an object, for the legend."""
     yield from (f"an object {share} %" for _, kind, share in known.rows("kind", 3, node) if kind == "object")
     yield from (f"{shape} {share} %" for _, shape, share in known.rows("shape", 3, node))
+    if parts := len(known.rows("child", 2, node)):
+        yield f"{parts} parts"
     yield from (f"colour {colour}" for _, colour, _ in known.rows("colour", 3, node))
     yield from (f"in {room}" for room in _rooms_of(known, node))
     if known.rows("held", 1, node):
