@@ -4,9 +4,11 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shapely import Polygon, affinity
 
 from tests.kb.drawings import known_model
 from utak.kb.language.atoms import atom_parts, long_form, short_form
@@ -123,3 +125,25 @@ def test_the_middle_of_a_thing_is_where_its_open_squares_leave_it() -> None:
     found = dict(chances.rooms_of(model.objects[0]))
     assert sum(found.values()) <= 100 and found
     assert all(room > 0 for room in found)
+
+
+@pytest.mark.parametrize("degrees", [0, 90, 33])
+def test_the_legs_of_an_object_are_its_parts(degrees: float) -> None:
+    model = known_model(ROWS)
+    outline = affinity.rotate(Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 5), (0, 5)]), degrees, (2, 2))
+    first, *others = model.objects
+    facts = stated(replace(model, objects=(replace(first, polygon=outline), *others)))
+    parts = [fact for fact in facts if fact.startswith("part_of(") and f"({first.name}_" in fact]
+    assert parts == [f"part_of({first.name}_{n},{first.name})" for n in (1, 2)]
+    assert {f"child({first.name},{first.name}_1)", f"node({first.name}_2)"} <= {*facts}
+    numbers = {
+        (name, row[0]): np.array([int(value) for value in row[1:]])
+        for name, row in map(atom_parts, facts)
+        if name in ("offset", "rect")
+    }
+    whole = numbers["rect", first.name]
+    for n in (1, 2):
+        west, south, east, north = numbers["rect", f"{first.name}_{n}"]
+        middle = numbers["offset", first.name] + numbers["offset", f"{first.name}_{n}"]
+        assert west <= middle[0] <= east and south <= middle[1] <= north
+        assert np.all(whole[:2] <= [west + 1, south + 1]) and np.all(whole[2:] >= [east - 1, north - 1])
