@@ -21,7 +21,7 @@ from utak.kb.language.reader import MAX_TERM_DEPTH, facts_from_text
 from utak.kb.language.source_text import Source, read_source
 from utak.kb.language.terms import Fact
 from utak.kb.language.tokens import Token, tokenize
-from utak.kb.language.vocabulary import Signature
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from utak.kb.reasoning.encodings import BoundedAnswer, encoding_path, encoding_text
 from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
 from utak.kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
@@ -185,10 +185,21 @@ def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple
     deciding = {one for name in USER_RULE_INTERFACES for one in rules.rules_reaching(name) if one.condition}
     what = "this rule never applied, for nothing was as it says"
     return tuple(
-        f"{one.line}: {what}: {one.written.removeprefix('#false ')}"
+        f"{one.line}: {what}: {one.written.removeprefix('#false ')}{_said_of_short_forms(one)}"
         for one in rules.statements
         if one in deciding and one.place not in applied
     )
+
+
+def _said_of_short_forms(one: Statement) -> str:
+    """Return a hint for a rule that reads facts without their confidence; "" for any other."""
+    short = sorted(
+        {atom.signature for atom in one.body if (declared := BELIEF_PREDICATES.get(atom.signature)) and declared.long}
+    )
+    told = (
+        f"{name}/{arity} holds where it is certain; {name}/{arity + 1} tells how likely it is" for name, arity in short
+    )
+    return "".join(f" ({hint})" for hint in told)
 
 
 def predicates_read(encoding: str, users: Sequence[Path], lines: Container[str] | None = None) -> frozenset[str]:
