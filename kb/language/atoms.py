@@ -33,6 +33,16 @@ def _arguments(text: str) -> Iterator[str]:
     yield text[start:].strip()
 
 
+def signature_of(atom: str) -> tuple[str, int]:
+    """Return the name and the number of arguments of an atom.
+
+    >>> signature_of("at(utak,corner(northeast))")
+    ('at', 2)
+    """
+    name, arguments = atom_parts(atom)
+    return name, len(arguments)
+
+
 def short_form(fact: str) -> str:
     """Return the short form of a fact that is known, such as kind(o1,object) for kind(o1,object,100); "" for none.
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from utak.kb.language.atoms import signature_of
 from utak.kb.perception.regions import Percept
 from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
 from utak.kb.reasoning.solver import solve
@@ -66,7 +67,7 @@ def classify_shapes(
     """Decide which shapes objects have."""
     answer: dict[str, dict[str, int]] = {}
     given = list(facts)
-    named = [fact for fact in world if fact.partition("(")[0] in predicates_read(SHAPES.stem, rules)]
+    named = [fact for fact in world if signature_of(fact) in predicates_read(SHAPES.stem, rules)]
     atoms = solve([SHAPES, *rules], [*given, *named]) or []
     if rules_reach(SHAPES.stem, rules):
         with record_decisions():  # what rules change is asked, not decided

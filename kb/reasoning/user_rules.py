@@ -202,11 +202,11 @@ def _said_of_short_forms(one: Statement) -> str:
     return "".join(f" ({hint})" for hint in told)
 
 
-def predicates_read(encoding: str, users: Sequence[Path], lines: Container[str] | None = None) -> frozenset[str]:
-    """Return the names of the predicates in the bodies of users' rules, or of those at some lines, in an encoding."""
+def predicates_read(encoding: str, users: Sequence[Path], lines: Container[str] | None = None) -> frozenset[Signature]:
+    """Return the predicates in the bodies of users' rules, or of those at some lines, in an encoding."""
     # Raises CannotOpenError or BadInputError when the files are not valid.
     rules = read_rules(users).rules_reaching(encoding) if users else ()
-    return frozenset(atom.name for one in rules if lines is None or one.line in lines for atom in one.body)
+    return frozenset(atom.signature for one in rules if lines is None or one.line in lines for atom in one.body)
 
 
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:

@@ -16,7 +16,7 @@ from shapely import Polygon
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
-from utak.kb.language.atoms import short_form
+from utak.kb.language.atoms import short_form, signature_of
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.localisation.field_account import Accommodation
@@ -110,16 +110,12 @@ def _long_facts(model: WorldModel, places: Places) -> Iterator[str]:
 
 def facts_for_rules(encoding: str, rules: Sequence[Path], model: WorldModel, places: Places) -> tuple[str, ...]:
     """Return the facts of the world model that users' rules name in an encoding which works without them."""
-    named = predicates_read(encoding, rules).intersection(name for name, _ in WORLD_FACTS_THERE[encoding])
+    # Others would have plans made anew whenever they change.
+    named = predicates_read(encoding, rules) & WORLD_FACTS_THERE[encoding]
     if not named:
         return ()
-    known = {(name, arity) for name, arity in WORLD_FACTS_THERE[encoding] if name in named}
-    facts = [
-        fact
-        for fact in model_facts(model, places)
-        if (name := fact.partition("(")[0]) in named and (name, fact.count(",") + 1) in known
-    ]
-    facts += [f"object({node.name})" for node in model.objects if "object" in named]
+    facts = [fact for fact in model_facts(model, places) if signature_of(fact) in named]
+    facts += [f"object({node.name})" for node in model.objects if ("object", 1) in named]
     facts += [ROBOT_AS_NODE.sub(ROBOT, fact) for fact in facts if ROBOT_AS_NODE.search(fact)]
     return tuple(dict.fromkeys(facts))
 

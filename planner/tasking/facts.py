@@ -184,7 +184,7 @@ def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
         yield f"size({node.name},{int(node.patch.mask.sum())})"
     yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)
     yield from (f"relief({door},{saved})" for door, saved in situation.door_reliefs.items() if saved)
-    if "door" in predicates_read("task", situation.rules):
+    if ("door", 2) in predicates_read("task", situation.rules):
         yield from (f"door({door.name},{door.confidence})" for door in situation.rooms.doors)
         yield from (f"door({door.name},0)" for door in situation.possible_doors)
     yield from situation.facts_for_rules("task")

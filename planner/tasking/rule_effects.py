@@ -6,8 +6,9 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from utak.geometry.kernels.arrays import XY
+from utak.kb.language.atoms import signature_of
 from utak.kb.reasoning.encodings import BoundedAnswer
-from utak.kb.reasoning.interfaces import WORLD_PREDICATES
+from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES, WORLD_PREDICATES
 from utak.kb.reasoning.solver import solve_within
 from utak.kb.reasoning.user_rules import predicates_read, rules_reach, rules_to_blame
 from utak.kb.tracing.decisions import record_decisions
@@ -19,8 +20,9 @@ from utak.planner.tasking.facts import problem_facts
 from utak.planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
 from utak.planner.tasking.search import MadePlan
 
-# The names of what rules read in the task plan that may change: what is believed, and what was settled.
-BELIEVED = frozenset(name for name, _ in WORLD_PREDICATES) | {"size", "settled", "settling", "left", "stuck", "came_to"}
+# What rules read in the task plan that may change: what is believed, and what was settled.
+SETTLED_BY_RUN = ("size", "settled", "settling", "left", "stuck", "came_to")
+BELIEVED = WORLD_PREDICATES | {one for one in USER_RULE_INTERFACES["task"] if one[0] in SETTLED_BY_RUN}
 ANY_DOOR = "unseen_door"  # a door that nobody has seen
 ANY_ROOM = "unseen_room"  # a room that nobody has seen, behind a door of which nothing is known
 DOOR_COMMANDS = 1  # that planner/asp/task/go.lp reckons for a pass through a door
@@ -69,7 +71,7 @@ def rules_about_doors(situation: Situation) -> DoorRules:
     if not rules_reach(TASK_ENCODING.stem, situation.rules):
         return DoorRules()
     facts = _facts_about_doors(situation)
-    reads_width = "width" in predicates_read(TASK_ENCODING.stem, situation.rules)
+    reads_width = ("width", 2) in predicates_read(TASK_ENCODING.stem, situation.rules)
     with record_decisions():  # questions about doors, not decisions
         without = _answer(facts, situation)
         closed, prices, reliefs = set(), {}, {}
@@ -142,12 +144,12 @@ def rules_without_plan(made: MadePlan, situation: Situation) -> tuple[str, ...]:
 def facts_rules_read(situation: Situation) -> frozenset[str]:
     """Return the facts of the world model and of meanings that users' rules read: a plan is made anew with these."""
     named = predicates_read(TASK_ENCODING.stem, situation.rules)
-    read = (named & BELIEVED) | ({"bound"} if "meaning" in named else set())
+    read = (named & BELIEVED) | ({("bound", 2)} if ("meaning", 2) in named else set())
     if not read:
         return frozenset()
     state = TableState({}, situation.model.place_on_view, None)
     facts = problem_facts(TaskProblem({}, (), {}, {}, {}, state), (), situation, frozenset(), ())
-    return frozenset(fact for fact in facts if fact.partition("(")[0] in read)
+    return frozenset(fact for fact in facts if signature_of(fact) in read)
 
 
 def rules_alone_leave_no_plan(made: MadePlan, blamed: Sequence[str], situation: Situation) -> bool:
