@@ -118,7 +118,8 @@ def _line(known: Said, door: str, truth: TrueTable) -> tuple[XY, XY]:
 
 
 def _squares_of(node: str, known: Said, truth: TrueTable) -> Bools:
-    """Return the squares of the verge, of the robot, or of the true thing nearest to a node; of all for none near."""
+    """Return the squares of the verge, of the robot, or of the true things that a node is taken for."""
+    # Things that touch are one node. A node that is nearest to the verge is part of it.
     if node == VERGE_NODE:
         return truth.walls
     if node == ROOT_NODE:
@@ -126,7 +127,18 @@ def _squares_of(node: str, known: Said, truth: TrueTable) -> Bools:
         mask[truth.square(truth.robot)] = True
         return mask
     thing = _thing_of(node, known, truth)
-    return truth.walls if thing is None else truth.mask(truth.things[thing])
+    if thing is None:
+        return truth.walls
+    within = shapely.Polygon([truth.place(east, north) for east, north in _corners(known.number("rect", 5, node))])
+    parts = [one for name, one in truth.things.items() if name == thing or within.contains(one.centroid)]
+    mask: Bools = np.logical_or.reduce([truth.mask(one) for one in parts])
+    return mask
+
+
+def _corners(rectangle: Sequence[float]) -> Sequence[XY]:
+    """Return the corners of a rectangle (west, south, east, north); those of a point for [], which contain nothing."""
+    west, south, east, north = rectangle or (0.0, 0.0, 0.0, 0.0)
+    return (west, south), (east, south), (east, north), (west, north)
 
 
 def _thing_of(node: str, known: Said, truth: TrueTable) -> str | None:
@@ -157,8 +169,10 @@ def _false_rooms(known: Said, truth: TrueTable, lines: Sequence[tuple[XY, XY]]) 
         if thing is None and node != ROOT_NODE:
             continue
         middle = truth.robot if thing is None else (truth.things[thing].centroid.x, truth.things[thing].centroid.y)
-        label = int(labels[truth.square(middle)])
-        if label or node == ROOT_NODE:  # the middle of a bent thing may lie outside of it, even in a wall
+        row, column = truth.square(middle)
+        about = labels[row - 1 : row + 2, column - 1 : column + 2]
+        label = int(labels[row, column]) or int(about.max())  # a square that a wall meets may be free in part
+        if label:  # the middle of a bent thing may lie outside of it, even in a wall
             where.setdefault(room, []).append((node, label))
     for room, there in where.items():
         for (one, first), (other, second) in pairwise(there):

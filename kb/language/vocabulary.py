@@ -179,6 +179,7 @@ class BeliefPredicate(NamedTuple):
     short: bool = False  # whether it has a short form without the confidence, which holds where that is 100
     long: Signature | None = None  # of a short form: the predicate with the confidence
     symmetric: bool = False  # whether its first two arguments can be exchanged
+    exclusive: bool = False  # whether a subject has one value of it, so that what is left of 100 percent is for others
 
 
 # A node of the world model.
@@ -297,7 +298,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
     ("width", 3): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
     ("threshold", 5): BeliefPredicate((DOOR_ARGUMENT, *TWO_POINTS), Openness.UNSEEN),
-    ("in", 3): _uncertain(THING_ARGUMENT, ROOM_ARGUMENT),
+    ("in", 3): _uncertain(THING_ARGUMENT, ROOM_ARGUMENT)._replace(exclusive=True),
     ("corner", 4): _uncertain(
         word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER
     ),

@@ -144,6 +144,11 @@ class Beliefs:
             return
         if not self.everything_seen and (subject is None or str(subject) not in self.known_names):
             yield self._row(declared, Unknown(new=True))
+        if declared.exclusive:
+            shares: dict[Value, int] = {}
+            for row in self._stated(signature, [subject, *[None] * (signature[1] - 1)]):
+                shares[row[declared.subject]] = shares.get(row[declared.subject], 0) + row[-1]
+            yield from (self._row(declared, thing) for thing, share in shares.items() if share < 100)
         if declared.open is Openness.UNTOLD:
             for thing in self._objects if subject is None else [subject]:
                 known = str(thing) in self.known_names and str(thing) not in declared.settled

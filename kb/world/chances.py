@@ -255,15 +255,21 @@ class Chances:
         return Widths(max(0.0, most - least), max(widest, door.width))
 
     def _wall_beyond(self, end: XY, outward: Floats) -> Sequence[XY]:
-        """Return the corners of the first surely occupied square from an end of a door outwards; () for none."""
-        x, y = end
-        while all(-1 <= value <= size for value, size in zip((y, x), self._surely_occupied.shape, strict=True)):
-            rows, columns = jamb(self._surely_occupied, (x, y))
-            if len(rows):
-                row, column = int(rows[0]), int(columns[0])
-                return [(column + i, row + j) for i in (0, 1) for j in (0, 1)]
-            x, y = x + float(outward[0]), y + float(outward[1])
-        return ()
+        """Return the corners of the nearest square that is surely wall beyond an end of a door; () for none."""
+        rows, columns = self._walls
+        away = np.stack([columns + 0.5 - end[0], rows + 0.5 - end[1]])
+        ahead, aside = outward @ away, np.abs(outward[0] * away[1] - outward[1] * away[0])
+        beyond = np.flatnonzero((ahead > 0) & (aside <= ahead + 1))  # so that a line from wall to wall crosses the door
+        if not len(beyond):
+            return ()
+        nearest = beyond[np.hypot(*away[:, beyond]).argmin()]
+        return [(int(columns[nearest]) + i, int(rows[nearest]) + j) for i in (0, 1) for j in (0, 1)]
+
+    @cached_property
+    def _walls(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The rows and the columns of the squares that are occupied beyond doubt and taken for verge."""
+        rows, columns = np.nonzero(self._surely_occupied & self.model.verge)
+        return rows, columns
 
     def of_corner(self, corner: Corner) -> int:
         """Return the percent of belief in a corner: that the squares about it are floor and wall as they seem."""

@@ -12,7 +12,8 @@ FACTS = [
     "kind(o1,object,100).", "kind(o1,object).", "kind(o2,object,80).",
     "shape(o1,square,90).", "shape(o1,disc,0).", "movable(o1,99).", "room(r1).", "room(r2).",
     "in(org,r1,100).", "in(org,r1).",
-    "in(o1,r1,60).", "in(o1,r2,40).", "door(d1,100).", "door(d1).", "door(d2,30).", "connects(d1,r1,r2,100).",
+    "in(o1,r1,60).", "in(o1,r2,40).", "in(o2,r1,90).",
+    "door(d1,100).", "door(d1).", "door(d2,30).", "connects(d1,r1,r2,100).",
     "connects(d1,r1,r2).", "width(d1,400).", "width(d1,400,608).", "corner(northeast,500,700,80).",
     "adjacent(org,o1,100).", "adjacent(org,o1).", "adjacent(o1,org,100).", "adjacent(o1,org).", "adjacent(o1,o2,40).",
     "adjacent(o2,o1,40).", "region(part1,zero,70).", "part_of(part1,floor).",
@@ -40,6 +41,9 @@ ANSWERS = {  # with something unseen, and with nothing
     "in(utak, r2)": ("no", "no"),
     "in(o1, r1)": ("don't know", "don't know"),
     "in(o1, r2, 40)": ("yes", "yes"),
+    "in(o1, r3)": ("no", "no"),  # 60 and 40 percent leave nothing for another room
+    "in(o2, r1)": ("don't know", "don't know"),
+    "in(o2, r2)": ("don't know", "don't know"),  # what is left of 100 percent
     "corner(northeast, 500, 700)": ("don't know", "don't know"),
     "corner(northwest, E, N)": ("no", "no"),
     "adjacent(utak, o1)": ("yes", "yes"),

@@ -116,7 +116,7 @@ def test_a_step_without_a_plan_is_said_to_have_none(
         ),
         ("means(G, at(utak, start))", [["g2"]]),
         ("means(G, F), F = at(utak, P)", [["g2", "at(utak,start)", "start"]]),
-        ("passes(I, D), connects(D, r1, r2), not plan(I, arrive(_))", [[1, "d1"]]),
+        ("passes(I, D), connects(D, r1, r2, _), not plan(I, arrive(_))", [[1, "d1"]]),
         ("refuted(carry(o1, P), N), given(N, at(o2, Q))", [["g1_r2", 0, "here"]]),
     ],
 )
