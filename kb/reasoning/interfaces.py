@@ -82,8 +82,10 @@ STEP_ARGUMENT = _compound_argument("step", "steps", PLAN_STEPS)
 STATED_FACTS: Forms = {
     name: declared.arguments[:-1] for (name, _), declared in BELIEF_PREDICATES.items() if declared.confident
 }
-ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
+QUESTIONS: Forms = dict.fromkeys(("kind", "shape", "room"), (THING_ARGUMENT,))  # whose answers exclude each other
+QUESTION_ARGUMENT = _compound_argument("question", "questions", QUESTIONS)
+ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
 # The activities of the agenda.
 WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look")  # about nothing in particular
@@ -99,6 +101,7 @@ COMPOUND_FORMS: Mapping[str, Forms] = {
     "activity": ACTIVITIES,
     "fact": STATED_FACTS,
     "act": ACTS,
+    "question": QUESTIONS,
 }
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
@@ -141,6 +144,11 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("weight", 2): (CONFIDENCE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("choice", 2): (QUESTION_ARGUMENT, FACT_ARGUMENT),
+        ("rest", 2): (QUESTION_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("alone", 1): (FACT_ARGUMENT,),
+        ("none", 1): (QUESTION_ARGUMENT,),
         ("true", 1): (FACT_ARGUMENT,),
         ("decides", 2): (_compound_argument("act", "acts", ACTS), FACT_ARGUMENT),
     },
@@ -303,7 +311,20 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
-    {("region", 3), ("stated", 2), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4)}
+    {
+        ("region", 3),
+        ("stated", 2),
+        ("weight", 2),
+        ("choice", 2),
+        ("rest", 2),
+        ("alone", 1),
+        ("neck", 5),
+        ("convex", 3),
+        ("wanted", 1),
+        ("candidate", 2),
+        ("seen", 4),
+        ("fit", 4),
+    }
     | {("described", 2), ("place", 3)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them

@@ -26,6 +26,7 @@ from utak.kb.reasoning.rulebook import Statement
 from utak.kb.reasoning.worker import Worker
 from utak.kb.tracing.possible_worlds import NATS
 
+SHOW_STATEMENT = re.compile(r"^#show .*\.$", re.MULTILINE)
 ALTERNATIVES = KB_ENCODINGS / "alternatives.lp"
 MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default; a convention
 MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
@@ -207,7 +208,9 @@ def _alternatives_facts(facts: Iterable[str]) -> list[str]:
 
 def worlds_request(facts: Iterable[str], rules: Iterable[str], number: int) -> dict[str, Any]:
     """Return the arguments of `likeliest_worlds` for the facts of a step: the process that solves opens no file."""
-    program = [*rules, encoding_text(ALTERNATIVES), *(f"{fact}." for fact in _alternatives_facts(facts))]
+    # Without #show: what holds in all worlds, or in some, is asked of every atom.
+    encoding = SHOW_STATEMENT.sub("", encoding_text(ALTERNATIVES))
+    program = [*rules, encoding, *(f"{fact}." for fact in _alternatives_facts(facts))]
     return {"program": "\n".join(program), "number": number}
 
 
