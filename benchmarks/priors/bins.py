@@ -35,9 +35,11 @@ def bin_of(value: int, among: tuple[Bin, ...]) -> Bin:
 
 
 WHOLE = bins(0)
-# By case of a region (kb/asp/interpretation.lp): bins of its mass, tenths of squares, and of its extent, squares.
+# By case of a region (kb/asp/interpretation.lp): bins of its mass, tenths of squares, for whether it is floor.
 MASS = {"undecided": bins(0, 5, 15, 30, 60, 120), "isolated": bins(0, 5, 15, 30, 60, 120)}
-EXTENT = {"undecided": bins(0, 3, 5, 7, 9, 13, 17, 25), "isolated": bins(0, 7, 13)}
+# For whether it is an object: bins of its extent, squares, and of its mass. An island of the verge is small mostly.
+EXTENT = {"undecided": bins(0, 3, 5, 7, 9, 13, 17, 25)}
+OBJECT_MASS = {"isolated": bins(0, 60)}
 CASES = (
     *("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "felt_other", "undecided"),
     "cut",

@@ -2,10 +2,11 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from itertools import product
 from typing import NamedTuple
 
 from benchmarks.calibration.figures import NO_CLASS, RECTANGLE
-from benchmarks.priors.bins import BEHIND, CASES, EXTENT, LEAD, MASS, MISFIT, OPENNESS, WHOLE, Bin, bin_of
+from benchmarks.priors.bins import BEHIND, CASES, EXTENT, LEAD, MASS, MISFIT, OBJECT_MASS, OPENNESS, WHOLE, Bin, bin_of
 from benchmarks.priors.measures import FitSeen, RegionSeen
 
 THOUSAND = 1000
@@ -28,7 +29,7 @@ class Counted(NamedTuple):
 
 
 def counted_kinds(regions: Iterable[RegionSeen]) -> Iterator[Counted]:
-    """Yield how many regions of each case are no floor, by mass, and how many of those are objects, by extent."""
+    """Yield how many regions of each case are no floor, and how many of those are objects."""
     seen = list(regions)
     for case in CASES:
         own = [region for region in seen if region.situation == case]
@@ -37,9 +38,10 @@ def counted_kinds(regions: Iterable[RegionSeen]) -> Iterator[Counted]:
             yield Counted("counted_solid", (case, mass), sum(one.truth != "floor" for one in there), len(there))
     for case in CASES:
         own = [region for region in seen if region.situation == case and region.truth != "floor"]
-        for extent in EXTENT.get(case, WHOLE):
-            there = [region for region in own if extent.holds(region.extent)]
-            yield Counted("counted_object", (case, extent), sum(one.truth == "object" for one in there), len(there))
+        for extent, mass in product(EXTENT.get(case, WHOLE), OBJECT_MASS.get(case, WHOLE)):
+            there = [region for region in own if extent.holds(region.extent) and mass.holds(region.mass)]
+            objects = sum(one.truth == "object" for one in there)
+            yield Counted("counted_object", (case, extent, mass), objects, len(there))
 
 
 def lead(fit: FitSeen) -> int:

@@ -15,9 +15,11 @@ WORDS = {
         "of 1000 regions of case {K} with {L/10} to {U/10} squares expected to be occupied, {W} were no floor",
     ),
     "counted_object": (
-        "K, L, U, W",
-        "Of 1000 regions of case K that are no floor, L to U squares long, W were objects.",
-        "of 1000 regions of case {K} that are no floor, {L} to {U} squares long, {W} were objects",
+        "K, L1, L2, M1, M2, W",
+        "Of 1000 regions of case K that are no floor, L1 to L2 squares long with a mass of M1 to M2 tenths of squares, "
+        "W were objects.",
+        "of 1000 regions of case {K} that are no floor, {L1} to {L2} squares long, with {M1/10} to {M2/10} squares "
+        "expected to be occupied, {W} were objects",
     ),
     "counted_first": (
         "M1, M2, D1, D2, P1, P2, W",

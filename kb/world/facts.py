@@ -15,6 +15,7 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
+from utak.kb.language.atoms import atom_parts
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.localisation.field_account import Accommodation
 from utak.kb.mapping.occupancy import OPEN
@@ -30,7 +31,6 @@ SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides
 SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention
 FELT_COLOUR_CONFIDENCE = 99  # percent: belief in a colour that was felt; convention
 ROBOT_AS_NODE = re.compile(rf"\b{ROOT_NODE}\b")  # the robot where it is a node; plans call it utak
-MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movable: more likely it is verge
 
 
 class Places(NamedTuple):
@@ -70,7 +70,9 @@ def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for fact in facts:
         if fact.startswith("kind("):
-            found.setdefault(fact[len("kind(") : fact.index(",")], fact)
+            node, kind, _ = atom_parts(fact)[1]
+            if node not in found or kind == "object":
+                found[node] = fact
     return found
 
 
@@ -151,12 +153,12 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     yield f"node({name})"
     yield f"child({FLOOR_NODE},{name})"
     yield f"kind({name},object,{node.confidence})"
-    if node.confidence < 100:
-        yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
+    others = ((kind, model.kinds.of(node.region, kind)) for kind in ("floor", "verge"))
+    yield from (f"kind({name},{kind},{percent})" for kind, percent in others if percent > 0)
     east, north = model.frame.place_to_utak(*node.patch.centre)
     yield f"offset({name},{hundredths(east)},{hundredths(north)})"
     yield from appearance_facts(node)
-    yield f"movable({name},{node.movable if node.confidence >= MIN_OBJECT_CONFIDENCE else 0})"
+    yield f"movable({name},{round(node.movable * node.confidence / 100)})"
     row, column = model.view.locate(*node.patch.centre)
     room = rooms.labels[row, column]
     if room:
