@@ -49,4 +49,5 @@ MISFIT = bins(0, 1, 3)
 # By the bin of misfit: those of the lead and of the open squares, fewer where few things fall.
 LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
 OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 101)), strict=True))
-BEHIND = bins(0, 1, 3)  # squares that another class leaves wrong beyond the first one
+NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
+BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one

@@ -6,7 +6,20 @@ from itertools import product
 from typing import NamedTuple
 
 from benchmarks.calibration.figures import NO_CLASS, RECTANGLE
-from benchmarks.priors.bins import BEHIND, CASES, EXTENT, LEAD, MASS, MISFIT, OBJECT_MASS, OPENNESS, WHOLE, Bin, bin_of
+from benchmarks.priors.bins import (
+    BEHIND,
+    CASES,
+    EXTENT,
+    LEAD,
+    MASS,
+    MISFIT,
+    NONE_MISFIT,
+    OBJECT_MASS,
+    OPENNESS,
+    WHOLE,
+    Bin,
+    bin_of,
+)
 from benchmarks.priors.measures import FitSeen, RegionSeen
 
 THOUSAND = 1000
@@ -83,6 +96,6 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
             true[behind] += shape == fit.shape
     for behind in BEHIND:
         yield Counted("counted_other", (behind,), true[behind], offered[behind])
-    for misfit in MISFIT:
+    for misfit in NONE_MISFIT:
         there = [fit for fit in wrong if misfit.holds(fit.fits[0][1])]
         yield Counted("counted_none", (misfit,), sum(fit.shape == NO_CLASS for fit in there), len(there))

@@ -55,6 +55,7 @@ def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> s
         "% How often alternatives were true, counted: what confidences are made of (a part of interpretation.lp and",
         "% shapes.lp). No number here is chosen: thousandths by Laplace's rule, (true + 1) / (counted + 2). After each",
         "% row: true / counted.",
+        "",
         "% It was made so, and is made anew by the same command:",
         *(f"%     {line}" for line in told),
         "",

@@ -168,8 +168,8 @@ def test_regions_and_classes_are_counted_by_their_bins() -> None:
     seen = [FitSeen("o1", fits, 0, 9, "object", shape) for shape in ("square", "brick", NO_CLASS, None)]
     classes = {(row.predicate, *row.given): (row.true, row.of) for row in counted_classes(seen)}
     assert classes["counted_first", Bin(0, 0), Bin(0, 0), Bin(0, 25)] == (1, 3)
-    assert classes["counted_other", Bin(0, 0)] == (1, 2)
-    assert classes["counted_none", Bin(0, 0)] == (1, 2)
+    assert classes["counted_other", Bin(0, 2)] == (1, 2)
+    assert classes["counted_none", Bin(0, 2)] == (1, 2)
 
 
 @pytest.mark.long

@@ -70,7 +70,7 @@ def test_where_a_thing_is_of_no_class_one_is_asked_for_as_surely_as_any_can_be(t
     questions = asked(tmp_path, CROSS, "object(x).\n", "at(utak, x).\n")
     shapes = [fact for fact in questions.beliefs.record.steps[-1].facts if fact.startswith("shape(o1,")]
     percents = {name: int(percent) for _, name, percent in (atom_parts(fact.rstrip("."))[1] for fact in shapes)}
-    assert percents.pop("polygon") == 99 and percents.pop("rectangle") < 50
+    assert percents.pop("polygon") >= 90 and percents.pop("rectangle") < 50
     last, first = (chosen(percents, key=lambda name: percents[name]) for chosen in (min, max))
     assert percents[last] < percents[first] < 50
     absence = questions.why_not(f"shape(o1,{last},C)")
