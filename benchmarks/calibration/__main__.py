@@ -16,15 +16,15 @@ from pathlib import Path
 from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.picture import picture
 from benchmarks.calibration.runs import Ended, Look, watched
-from benchmarks.calibration.statements import Statement, statements
+from benchmarks.calibration.statements import HeldStatement, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
 from utak.simulator.run.warming import warm_all
 
-PARTS = 2  # of a run between the moments: first, middle, last
-Noted = tuple[int, tuple[Statement, ...]]  # step, statements
+MOMENT_PARTS = 2  # of a run between the moments: first, middle, last
+MomentStatements = tuple[int, tuple[HeldStatement, ...]]  # step, statements
 
 
-def noted(look: Look) -> Noted:
+def noted(look: Look) -> MomentStatements:
     """Return the statements of a moment, with its step."""
     return look.step, tuple(statements(look.moment))
 
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     ends: list[str] = []
     for number, asked in enumerate(dealt(given.worlds, given.seed), 1):
         noise = given.noise[(number - 1) % len(given.noise)]
-        ended = watched(asked, noise, given.max_steps, given.seconds, noted, PARTS)
+        ended = watched(asked, noise, given.max_steps, given.seconds, noted, MOMENT_PARTS)
         found += held(ended)
         ends.append(ended.line())
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from benchmarks.calibration.table import Reliability
 from utak.simulator.sweep.picture import STYLE, svg_line, svg_mark, svg_text
 
-SIDE, LEFT, TOP, LEGEND = 300.0, 56.0, 28.0, 190.0  # pixels; layout
+PANEL_SIDE, LEFT, TOP, LEGEND = 300.0, 56.0, 28.0, 190.0  # pixels; layout
 MIN_SHOWN = 10  # statements: a bin with fewer is not drawn, for its share says little
 TICKS = (0, 20, 40, 60, 80, 100)  # percent
 
 
 def picture(found: Sequence[Reliability]) -> str:
     """Return an SVG document, as text, on a white ground; on the diagonal confidences are what they say."""
-    width, height = LEFT + SIDE + LEGEND, TOP + SIDE + 56
+    width, height = LEFT + PANEL_SIDE + LEGEND, TOP + PANEL_SIDE + 56
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
         f'viewBox="0 0 {width:.0f} {height:.0f}" role="img" aria-label="statements that were true, by confidence">',
@@ -30,11 +30,11 @@ def picture(found: Sequence[Reliability]) -> str:
         x, y = _point(tick, 0)
         parts.append(svg_text(x, y + 18, f"{tick}", anchor="middle"))
     parts += [svg_line(*_point(0, 0), *_point(100, 100), "axis")]
-    parts.append(svg_text(LEFT + SIDE / 2, TOP + SIDE + 40, "confidence, percent", anchor="middle"))
+    parts.append(svg_text(LEFT + PANEL_SIDE / 2, TOP + PANEL_SIDE + 40, "confidence, percent", anchor="middle"))
     for number, one in enumerate(found):
         y = TOP + 20 * (number + 0.5)
-        parts.append(svg_mark(number, LEFT + SIDE + 24, y))
-        parts.append(svg_text(LEFT + SIDE + 36, y + 4, f"{one.predicate} ({one.number})"))
+        parts.append(svg_mark(number, LEFT + PANEL_SIDE + 24, y))
+        parts.append(svg_text(LEFT + PANEL_SIDE + 36, y + 4, f"{one.predicate} ({one.number})"))
         for row in one.rows.values():
             if row.number >= MIN_SHOWN:
                 title = f"{one.predicate}: {100 * row.true:.0f} percent of {row.number} were true"
@@ -44,4 +44,4 @@ def picture(found: Sequence[Reliability]) -> str:
 
 def _point(confidence: float, true: float) -> tuple[float, float]:
     """Return the pixels of a point, both of its values in percent."""
-    return LEFT + SIDE * confidence / 100, TOP + SIDE * (1 - true / 100)
+    return LEFT + PANEL_SIDE * confidence / 100, TOP + PANEL_SIDE * (1 - true / 100)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from benchmarks.calibration.dealt import DealtWorld, made
 from benchmarks.calibration.statements import Moment, moment_of
-from benchmarks.calibration.truth import Truth, frame_of
+from benchmarks.calibration.truth import TableTruth, frame_of
 from benchmarks.claims.asked import Asked
 from benchmarks.worlds.scenes import RULES_FILE, write
 from utak.simulator.episode.episode import EpisodeLog
@@ -20,7 +20,7 @@ from utak.simulator.scenario.settings import Settings
 
 
 class Look(NamedTuple):
-    """What there is to look at after an impression."""
+    """The moment after an impression: belief, truth, and what encodings were given."""
 
     moment: Moment
     model: Any  # kb.world.model.WorldModel
@@ -30,7 +30,7 @@ class Look(NamedTuple):
 
 
 class Ended(NamedTuple):
-    """How a run ended."""
+    """The end of a run, with what was noted of it."""
 
     asked: Asked
     noise: float
@@ -110,7 +110,7 @@ def _decisions(
 def _look(dealt: DealtWorld, session: Session, decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> Look:
     """Return the present moment of a run."""
     world, model = dealt.world, session.robot.model  # type: ignore[attr-defined]
-    truth = Truth(dealt, dict(session.table.polygons), session.table.utak)
+    truth = TableTruth(dealt, dict(session.table.polygons), session.table.utak)
     frame = frame_of(model, truth, (world.utak.x, world.utak.y))
     facts = tuple(fact.rstrip(".") for fact in session.line["belief"]["facts"])
     return Look(moment_of(model, facts, truth, frame), model, frame, session.line["step"], decisions)

@@ -12,7 +12,7 @@ import shapely
 from shapely import LineString, Point
 
 from benchmarks.calibration.figures import RECTANGLE
-from benchmarks.calibration.truth import FLOOR, VERGE, NodeTruth, Truth
+from benchmarks.calibration.truth import FLOOR, VERGE, NodeTruth, TableTruth
 from benchmarks.worlds.furniture import OUTLINE_SHAPES
 from benchmarks.worlds.odd.houses import COMPASS
 from utak.geometry.kernels.arrays import XY, Square
@@ -22,7 +22,7 @@ CERTAIN = 100  # percent: of a form without confidence, which says that it is kn
 HUNDREDTHS = 100  # of a square: the unit of lengths in facts
 DOOR_DISTANCE = 1.0  # squares from the narrowest line of a believed door to the true one
 WIDTH_TOLERANCE = 1.0  # squares: a width stated as one number is right within so much, as an end lies in some square
-CORNER_DISTANCE = 1.0  # squares in each axis of the table, as DESIGN says when the robot is at a corner
+FURTHEST_CORNER_DISTANCE = 1.0  # squares in each axis of the table, as DESIGN says when the robot is at a corner
 CORNERLESS = ("disc",)
 
 
@@ -32,7 +32,7 @@ class Moment(NamedTuple):
     facts: tuple[str, ...]  # without full stops
     nodes: Mapping[str, NodeTruth]  # what each believed object is
     squares: Mapping[str, frozenset[Square]]  # of each node, table frame
-    truth: Truth
+    truth: TableTruth
 
     def place(self, east: int, north: int) -> XY:
         """Return a point, hundredths of squares in the robot frame, as a point of the table, in squares.
@@ -47,7 +47,7 @@ class Moment(NamedTuple):
         return x * c - y * s + self.truth.utak[0], x * s + y * c + self.truth.utak[1]
 
 
-class Statement(NamedTuple):
+class HeldStatement(NamedTuple):
     """One statement of belief, with its confidence in percent and whether it is true."""
 
     predicate: str  # name/arity
@@ -62,14 +62,14 @@ IsTrue = Callable[[Moment, tuple[str, ...]], bool | None]
 
 
 class Row(NamedTuple):
-    """What a form of a predicate says."""
+    """The meaning of a form of a predicate."""
 
     is_true: IsTrue
     confidence: int | None = None  # which argument it is; None: the form says that it is known
     exclusive: bool = False  # whether statements about one thing exclude each other
 
 
-def statements(moment: Moment) -> Iterator[Statement]:
+def statements(moment: Moment) -> Iterator[HeldStatement]:
     """Yield the statements of a moment that the truth decides."""
     for fact in moment.facts:
         name, arguments = atom_parts(fact)
@@ -79,7 +79,7 @@ def statements(moment: Moment) -> Iterator[Statement]:
             continue
         sure = CERTAIN if row.confidence is None else int(arguments[row.confidence])
         excludes = f"{name}({arguments[0]})" if row.exclusive and arguments[1] not in ("rectangle", "polygon") else ""
-        yield Statement(f"{name}/{len(arguments)}", fact, sure, true, excludes)
+        yield HeldStatement(f"{name}/{len(arguments)}", fact, sure, true, excludes)
 
 
 def _kind(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
@@ -177,7 +177,7 @@ def _corner(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
         return None
     corners = shapely.get_coordinates(floor.exterior)
     best = corners[(corners @ way) >= (corners @ way).max() - 1e-6]
-    return bool((np.abs(best - (x, y)).max(axis=1) <= CORNER_DISTANCE).any())
+    return bool((np.abs(best - (x, y)).max(axis=1) <= FURTHEST_CORNER_DISTANCE).any())
 
 
 STATEMENTS: Mapping[tuple[str, int], Row] = {
@@ -196,7 +196,7 @@ STATEMENTS: Mapping[tuple[str, int], Row] = {
 CLASS_NAMES = OUTLINE_SHAPES
 
 
-def moment_of(model: Any, facts: tuple[str, ...], truth: Truth, frame: Any) -> Moment:
+def moment_of(model: Any, facts: tuple[str, ...], truth: TableTruth, frame: Any) -> Moment:
     """Return a moment. frame : where the table lies in the map of the model, as `benchmarks.harness.beliefs` says."""
     squares = {node.name: frozenset(frame.square(*square) for square in node.patch.squares()) for node in model.objects}
     return Moment(facts, {name: truth.of(there) for name, there in squares.items()}, squares, truth)

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from benchmarks.calibration.statements import CERTAIN, Statement
+from benchmarks.calibration.statements import CERTAIN, HeldStatement
 
 BINS = 10  # of 10 percent each; 100 percent is in the last one. A convention
 
@@ -17,7 +17,7 @@ class Held(NamedTuple):
 
     world: str
     step: int
-    statement: Statement
+    statement: HeldStatement
 
 
 class ReliabilityRow(NamedTuple):
@@ -48,7 +48,7 @@ def reliabilities(held: Iterable[Held]) -> list[Reliability]:
 
 
 def _reliability(predicate: str, held: Sequence[Held]) -> Reliability:
-    bins: dict[int, list[Statement]] = defaultdict(list)
+    bins: dict[int, list[HeldStatement]] = defaultdict(list)
     sums: dict[tuple[str, int, str], int] = defaultdict(int)
     for world, step, statement in held:
         bins[min(BINS - 1, statement.confidence * BINS // 100)].append(statement)

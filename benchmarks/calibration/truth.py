@@ -20,14 +20,14 @@ SEVERAL_SHARE = 0.25
 
 
 class NodeTruth(NamedTuple):
-    """What a believed node, or a region, is in truth."""
+    """The truth about a believed node, or a region."""
 
     kind: str  # object, verge or floor: what covers most of its squares; floor only where nothing else covers any
     thing: str | None  # the thing that covers most of its squares, if its kind is object
     shape: str | None  # the class of the thing; NO_CLASS for several things together; None where there is none
 
 
-class Truth:
+class TableTruth:
     """The truth of one moment."""
 
     def __init__(self, dealt: DealtWorld, polygons: dict[str, Polygon], utak: tuple[float, float]) -> None:
@@ -87,6 +87,6 @@ def _digital(shape: Any, width: int, height: int) -> Bools:
     return _DIGITAL[key]
 
 
-def frame_of(model: Any, truth: Truth, origin: tuple[float, float]) -> TableFrame:
+def frame_of(model: Any, truth: TableTruth, origin: tuple[float, float]) -> TableFrame:
     """Return where the table's squares lie in the map of a model. origin : where the robot woke, table frame."""
     return table_frame(model, origin, truth.utak, truth.heading)[0]

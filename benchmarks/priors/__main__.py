@@ -27,15 +27,15 @@ from utak.simulator.run.warming import warm_all
 PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
 
 
-class Noted(NamedTuple):
-    """What is counted of one moment."""
+class CountedMoment(NamedTuple):
+    """The things of one moment that are counted."""
 
     regions: tuple[RegionSeen, ...]
     fits: tuple[FitSeen, ...]
     untried: tuple[bool, ...]  # of the objects never moved, which are objects in truth: whether each can be moved
 
 
-def noted(look: Look) -> Noted:
+def noted(look: Look) -> CountedMoment:
     """Return what is counted of a moment."""
     nodes, tried = look.moment.nodes, {node.name for node in look.model.objects if node.moved or node.stuck}
     untried = (
@@ -45,13 +45,13 @@ def noted(look: Look) -> Noted:
         and (node := statement.fact.partition("(")[2].partition(",")[0]) not in tried
         and nodes[node].kind == "object"
     )
-    return Noted(tuple(regions_seen(look)), tuple(fits_seen(look)), tuple(untried))
+    return CountedMoment(tuple(regions_seen(look)), tuple(fits_seen(look)), tuple(untried))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the worlds, count, and write the file; return 0."""
     given = _parser().parse_args(arguments)
-    samples, moments = given.samples, list[Noted]()
+    samples, moments = given.samples, list[CountedMoment]()
     if given.recount:
         moments = [_read(line) for line in samples.read_text().splitlines()]
     else:
@@ -72,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def written(moments: Sequence[Noted], command: str, worlds: int) -> str:
+def written(moments: Sequence[CountedMoment], command: str, worlds: int) -> str:
     """Return the file of priors that some moments give."""
     regions = [region for moment in moments for region in moment.regions]
     fits = [fit for moment in moments for fit in moment.fits]
@@ -84,10 +84,10 @@ def written(moments: Sequence[Noted], command: str, worlds: int) -> str:
     return text([*counted_kinds(regions), *counted_classes(fits)], movable, [command, counts])
 
 
-def _read(line: str) -> Noted:
+def _read(line: str) -> CountedMoment:
     """Return a moment from its line of JSON."""
     regions, fits, untried = json.loads(line)
-    return Noted(
+    return CountedMoment(
         tuple(RegionSeen(*region) for region in regions),
         tuple(FitSeen(node, tuple(map(tuple, found)), *rest) for node, found, *rest in fits),
         tuple(untried),

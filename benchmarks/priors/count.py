@@ -1,4 +1,4 @@
-"""How often each alternative was true, given the measures that confidences are conditioned on."""
+"""Counts: how often each alternative was true, given the measures that confidences are conditioned on."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,4 @@
-"""What the confidences are conditioned on, measured at one moment of a run, with what is true of it."""
+"""Measures that confidences are conditioned on, taken at one moment of a run, with what is true of each."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

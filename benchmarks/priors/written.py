@@ -46,7 +46,7 @@ CONSTANTS = {  # by case: numbers that Python reads, percent
         "Percent: of things that were felt and cut out of the bounds (kb/world/objects.py), so many were objects.",
     ),
 }
-WIDTH = 118
+PRIORS_LINE_WIDTH = 118
 
 
 def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> str:
@@ -83,7 +83,7 @@ def _documented(predicate: str) -> list[str]:
     arguments, what, _ = WORDS[predicate]
     return [
         f"%*! {predicate}({arguments})",
-        *textwrap.wrap(f"{what} *%", WIDTH, initial_indent="    ", subsequent_indent="    "),
+        *textwrap.wrap(f"{what} *%", PRIORS_LINE_WIDTH, initial_indent="    ", subsequent_indent="    "),
     ]
 
 
@@ -98,6 +98,6 @@ def _constant(name: str, about: str, row: Counted) -> list[str]:
 
 def _wrapped(head: str, words: str) -> list[str]:
     """Return how a predicate reads as an annotation, in lines with a string each."""
-    parts = textwrap.wrap(words, WIDTH - len(head) - len('%! says  " "'))
+    parts = textwrap.wrap(words, PRIORS_LINE_WIDTH - len(head) - len('%! says  " "'))
     lines = [f'%! says {head} "{parts[0]}', *(f'%!   "{part}' for part in parts[1:])]
     return [*(f'{line} "' for line in lines[:-1]), f'{lines[-1]}" else', '%!   "no such count is known"']

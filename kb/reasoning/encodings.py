@@ -15,7 +15,9 @@ ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp"
 SUFFIX = ".lp"  # of the files of encodings
 # By the name of an encoding: files beside it that are a part of it, and of others, too.
 SHARED_FILES = {"interpretation": ("priors",), "shapes": ("priors",)}
-PARTS = frozenset(name for names in SHARED_FILES.values() for name in names)  # they are no encodings by themselves
+SHARED_PARTS = frozenset(
+    name for names in SHARED_FILES.values() for name in names
+)  # they are no encodings by themselves
 # Bounded searches look for the best answer from below first (unsatisfiable cores), which ends where branch and bound
 # does not; measured by benchmarks.orders.strategies. Where it does not end, branch and bound tells the best so far.
 CORE_GUIDED = ("--opt-strategy=usc,oll,stratify",)
@@ -37,7 +39,7 @@ class BoundedAnswer(NamedTuple):
 
 def all_encodings() -> tuple[Path, ...]:
     """Return the paths of all our encodings, each a file or a folder, sorted by name."""
-    paths = [path for folder in ENCODING_FOLDERS for path in folder.iterdir() if path.stem not in PARTS]
+    paths = [path for folder in ENCODING_FOLDERS for path in folder.iterdir() if path.stem not in SHARED_PARTS]
     found = [path for path in paths if encoding_files(path)]
     return tuple(sorted(found, key=lambda path: path.stem))
 

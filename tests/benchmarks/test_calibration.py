@@ -15,9 +15,9 @@ from benchmarks.calibration import __main__ as calibration
 from benchmarks.calibration.dealt import DealtWorld, dealt, made
 from benchmarks.calibration.figures import NO_CLASS, RECTANGLE, class_of
 from benchmarks.calibration.picture import picture
-from benchmarks.calibration.statements import Moment, Statement, statements
+from benchmarks.calibration.statements import HeldStatement, Moment, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
-from benchmarks.calibration.truth import Truth
+from benchmarks.calibration.truth import TableTruth
 from benchmarks.claims.asked import Asked, all_kinds
 from benchmarks.priors import __main__ as priors
 from benchmarks.priors.bins import ANY, EXTENT, MASS, WHOLE, Bin, bin_of, bins
@@ -53,7 +53,7 @@ def moment(*facts: str, **nodes: tuple[int, int, int, int]) -> Moment:
     plan = SimpleNamespace(width=20, height=16, floor=floor, verge=box(0, 0, 20, 16).difference(floor))
     world = SimpleNamespace(plan=plan, things=(THING, STONE), heading=0)
     door = (box(18, 6, 20, 10), 4.0)
-    truth = Truth(DealtWorld(Asked("plugged", 0), world, (door,)), {}, (12.5, 8.5))
+    truth = TableTruth(DealtWorld(Asked("plugged", 0), world, (door,)), {}, (12.5, 8.5))
     squares = {
         name: frozenset((x, y) for x in range(west, east) for y in range(south, north))
         for name, (west, south, east, north) in nodes.items()
@@ -113,7 +113,9 @@ def test_doors_and_corners_are_found_where_they_are() -> None:
 
 
 def statement(confidence: int, true: bool, alternatives: str = "") -> Held:
-    return Held("plugged:0", 3, Statement("kind/3", f"kind(o1,object,{confidence})", confidence, true, alternatives))
+    return Held(
+        "plugged:0", 3, HeldStatement("kind/3", f"kind(o1,object,{confidence})", confidence, true, alternatives)
+    )
 
 
 def test_the_error_is_the_mean_difference_of_bins_and_certain_mistakes_are_listed() -> None:

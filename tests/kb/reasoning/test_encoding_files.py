@@ -16,7 +16,7 @@ from utak.kb.perception.interpretation import (
 from utak.kb.perception.regions import Percept, Region
 from utak.kb.reasoning.encodings import (
     KB_ENCODINGS,
-    PARTS,
+    SHARED_PARTS,
     all_encodings,
     encoding_constant,
     encoding_files,
@@ -74,7 +74,7 @@ def test_encodings_share_the_counted_priors_as_a_part_of_each() -> None:
     shared = [path.name for path in encoding_files(encoding_path("shapes"))]
     assert shared == ["shapes.lp", "priors.lp"]
     assert encoding_files(encoding_path("interpretation"))[1:] == encoding_files(encoding_path("shapes"))[1:]
-    assert not {path.stem for path in all_encodings()} & PARTS
+    assert not {path.stem for path in all_encodings()} & SHARED_PARTS
 
 
 def test_what_was_counted_is_never_certain() -> None:
