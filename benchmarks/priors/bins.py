@@ -41,13 +41,13 @@ MASS = {"undecided": bins(0, 5, 15, 30, 60, 120), "isolated": bins(0, 5, 15, 30,
 EXTENT = {"undecided": bins(0, 3, 5, 7, 9, 13, 17, 25)}
 OBJECT_MASS = {"isolated": bins(0, 60)}
 CASES = (
-    *("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "felt_other", "undecided"),
+    *("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
     "cut",
 )
 # Of a thing: squares of misfit of its first class, how far that is ahead, open squares for each 100 sure ones.
 MISFIT = bins(0, 1, 3)
 # By the bin of misfit: those of the lead and of the open squares, fewer where few things fall.
 LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
-OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 101)), strict=True))
+OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 26, 101)), strict=True))
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one

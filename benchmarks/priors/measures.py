@@ -76,7 +76,7 @@ def _situation(cut: bool, isolated: bool, bounds: bool, felt: set[str], extent: 
     if verge:
         return "felt_verge"
     if other:
-        return "felt_long" if extent > LONGEST_OBJECT else "felt_other"
+        return "felt_long" if extent > LONGEST_OBJECT else "own_colour"
     return "undecided"
 
 

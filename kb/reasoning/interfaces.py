@@ -102,7 +102,7 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
 CASE_ARGUMENT = word_argument(
     "case",
-    ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "felt_other", "undecided"),
+    ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
 )
 # By the name of an encoding: the predicates that users' rules may use there, with their argument types.
 USER_RULE_INTERFACES: Mapping[str, Interface] = {

@@ -40,7 +40,14 @@ from utak.kb.perception.protrusions import (
 from utak.kb.perception.regions import Percept, Region, label_of, region_of
 from utak.kb.perception.seams import cornered_parts, part_by_colour
 from utak.kb.world.facts import colour_facts
-from utak.kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
+from utak.kb.world.model import (
+    PROBABLY_VERGE,
+    Node,
+    WorldModel,
+    count_open_squares,
+    free_squares,
+    occupied_squares,
+)
 
 LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned
 # Likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
@@ -63,7 +70,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own."""
     percept, labels, kinds, seams = regions
     names = [f"part{n}" for n in range(int(labels.max()) + 1)]
-    bounds = np.array([kinds.of(name, "object") < MIN_OBJECT_BELIEF for name in names])[labels]
+    bounds = np.array([kinds.of(name, "verge") >= PROBABLY_VERGE for name in names])[labels]
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
