@@ -36,11 +36,12 @@ class Entry(NamedTuple):
 
 
 def encodings() -> list[Path]:
-    """Return all encodings, each a file or a folder of files; the world model's own vocabulary first."""
+    """Return all encodings, files or folders, and the parts that they share; the world model's own vocabulary first."""
     sys.path.insert(0, str(ROOT))
-    from utak.kb.reasoning.encodings import all_encodings
+    from utak.kb.reasoning.encodings import KB_ENCODINGS, SHARED_PARTS, all_encodings
 
-    return sorted(all_encodings(), key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
+    parts = [KB_ENCODINGS / f"{name}.lp" for name in SHARED_PARTS]
+    return sorted([*all_encodings(), *parts], key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
 
 
 def entries(text: str) -> list[Entry]:

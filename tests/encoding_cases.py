@@ -17,6 +17,7 @@ from utak.kb.reasoning.encodings import all_encodings, encoding_files
 
 ROOT = Path(__file__).resolve().parent.parent
 ENCODINGS = all_encodings()
+CASE_PRIORS = ROOT / "tests" / "kb" / "case_priors.lp"  # in the place of the priors that were counted
 
 
 class Case(NamedTuple):
@@ -33,6 +34,16 @@ class Case(NamedTuple):
 def case_file(encoding: Path) -> Path:
     """Return the file with the cases of an encoding."""
     return ROOT / "tests" / encoding.parent.parent.name / "cases" / f"{encoding.stem}.lp"
+
+
+def case_files(encoding: Path) -> tuple[Path, ...]:
+    """Return the files of an encoding, with the priors of its cases."""
+    return tuple(CASE_PRIORS if path.stem == "priors" else path for path in encoding_files(encoding))
+
+
+def case_text(encoding: Path) -> str:
+    """Return the text of an encoding, with the priors of its cases."""
+    return "\n".join(path.read_text() for path in case_files(encoding))
 
 
 def cases_of(encoding: Path) -> list[Case]:
@@ -58,16 +69,17 @@ def _atoms(texts: Iterable[str]) -> frozenset[str]:
 
 
 def statements(encoding: Path) -> list[clingo.ast.AST]:
-    """Return the rules and optimisation statements of an encoding."""
+    """Return the rules and optimisation statements of an encoding, without the priors."""
     found: list[clingo.ast.AST] = []
-    clingo.ast.parse_files(list(map(str, encoding_files(encoding))), found.append)
+    files = [path for path in case_files(encoding) if path != CASE_PRIORS]
+    clingo.ast.parse_files(list(map(str, files)), found.append)
     return [s for s in found if s.ast_type in (clingo.ast.ASTType.Rule, clingo.ast.ASTType.Minimize)]
 
 
 def without(encoding: Path, dropped: clingo.ast.AST) -> str:
     """Return the text of an encoding with one statement left out; what only it derived stays declared."""
     found: list[clingo.ast.AST] = []
-    clingo.ast.parse_files(list(map(str, encoding_files(encoding))), found.append)
+    clingo.ast.parse_files(list(map(str, case_files(encoding))), found.append)
     return "\n".join(str(s) for s in found if s.location != dropped.location)
 
 

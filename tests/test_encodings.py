@@ -4,9 +4,17 @@ from pathlib import Path
 
 import pytest
 
-from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
+from tests.encoding_cases import (
+    ENCODINGS,
+    Case,
+    case_text,
+    cases_of,
+    disagreement,
+    optimal_answers,
+    statements,
+    without,
+)
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.reasoning.encodings import encoding_text
 from utak.kb.reasoning.solver import solve
 
 
@@ -29,7 +37,7 @@ def place(part) -> str:  # type: ignore[no-untyped-def]
 
 @pytest.mark.parametrize(("encoding", "case"), CASES)
 def test_case(encoding: Path, case: Case) -> None:
-    assert not disagreement(case, optimal_answers(encoding_text(encoding), case.facts))
+    assert not disagreement(case, optimal_answers(case_text(encoding), case.facts))
 
 
 @pytest.mark.long

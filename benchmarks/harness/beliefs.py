@@ -84,13 +84,7 @@ def beliefs(robot: Any, origin: tuple[float, float], now: tuple[float, float], h
     model = getattr(robot, "model", None)
     if model is None:
         return SeenBeliefs([], [])
-    quarters = round((heading - model.frame.angle) / 90) % 4
-    x, y = TableFrame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
-    frames = [TableFrame(quarters, east - x, north - y) for east, north in _beside(now)]
-    drift, frame = min(
-        (max(abs(frame.east - math.floor(origin[0])), abs(frame.north - math.floor(origin[1]))), frame)
-        for frame in frames
-    )
+    frame, drift = table_frame(model, origin, now, heading)
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
     rows, columns = np.nonzero(model.certain)
     full = model.view.state[rows, columns] == SETTLED_FULL
@@ -100,6 +94,20 @@ def beliefs(robot: Any, origin: tuple[float, float], now: tuple[float, float], h
         for row, column, occupied in zip(rows.tolist(), columns.tolist(), full.tolist(), strict=True)
     ]
     return SeenBeliefs(objects, certain, drift)
+
+
+def table_frame(
+    model: Any, origin: tuple[float, float], now: tuple[float, float], heading: float
+) -> tuple[TableFrame, int]:
+    """Return the table frame seen from the map frame of a model, and the drift in squares; arguments as `beliefs`."""
+    quarters = round((heading - model.frame.angle) / 90) % 4
+    x, y = TableFrame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
+    frames = [TableFrame(quarters, east - x, north - y) for east, north in _beside(now)]
+    drift, frame = min(
+        (max(abs(frame.east - math.floor(origin[0])), abs(frame.north - math.floor(origin[1]))), frame)
+        for frame in frames
+    )
+    return frame, drift
 
 
 def _beside(place: tuple[float, float]) -> Iterable[tuple[int, int]]:

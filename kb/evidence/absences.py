@@ -15,12 +15,11 @@ from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.perception.interpretation import surest_kind
 from utak.kb.tracing.decisions import SolverCall
 
+WIDER_SHAPES = ("rectangle", "polygon")  # of several classes each
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
-SURE_KIND = {"object": 95, "verge": 99, "floor": 100, "utak": 100}  # percent: the surest that interpretation.lp derives
-SURE_SHAPE = {"rectangle": 98, "polygon": 99}  # percent: likewise by shapes.lp
-SURE_CLASS = 98  # percent: likewise, a class that leaves no other within three squares of misfit
 
 
 class AbsenceExplainer:
@@ -86,16 +85,16 @@ class AbsenceExplainer:
         name, arguments = atom_parts(fact)
         now = self._facts.record.steps[step]
         if name == "kind" and len(arguments) == 3 and arguments[0] in now.regions:
-            confidence = _number_or(arguments[2], SURE_KIND.get(arguments[1], 95))
+            confidence = _number_or(arguments[2], surest_kind(arguments[1]))
             atom = f"kind({now.regions[arguments[0]]},{arguments[1]},{confidence})"
             yield from self._calls("interpretation", atom, step)
         elif name == "shape" and len(arguments) == 3 and f"node({arguments[0]})" in now.fact_set:
             node, shape = arguments[:2]
             call, number = self._newest("shapes", step, f"fit({node},")
             found = [atom_parts(atom)[1] for atom in call.answer or () if atom.startswith(f"shape({node},")]
-            likeliest = max((int(percent) for _, other, percent in found if other not in SURE_SHAPE), default=0)
-            # With any confidence: with that of the likeliest class, so that it takes its place; all may be refuted.
-            sure = SURE_SHAPE.get(shape, likeliest or SURE_CLASS)
+            # With any confidence: with that of the likeliest class, so that it takes its place.
+            alike = [int(percent) for _, other, percent in found if (other in WIDER_SHAPES) == (shape in WIDER_SHAPES)]
+            sure = max(alike, default=100)
             if call.facts:
                 yield call, f"shape({node},{shape},{_number_or(arguments[2], sure)})", number
         elif name == "bound" and len(arguments) == 2:

@@ -20,6 +20,7 @@ from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError, did_you_mean
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import thing_positions
+from utak.kb.perception.interpretation import UNTRIED_MOVABLE
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
@@ -234,10 +235,9 @@ class FactExplainer:
             tried = self._motion_reasons(node, step)
             if tried:
                 return tried
-            hardly = "what is less likely an object than not is stated not to be movable"
-            return [Reason("it was never tried", hardly, ReasonKind.CONVENTION), *self._facts([f"kind({node},"], step)]
-        untried = Reason("it was never tried", "without a trial both are as likely", ReasonKind.CONVENTION)
-        return [untried, squares_reason(self.record, step, node)]
+        counted = f"of objects that were never tried, {UNTRIED_MOVABLE} of 100 could be moved, by what was counted"
+        untried = Reason("it was never tried", counted, ReasonKind.CONVENTION)
+        return [untried, *self._facts([f"kind({node},object,"], step)]
 
     def _grasp_reasons(self, node: str, step: int) -> list[Reason]:
         """Return why a node is believed to be in hand: the newest grasp."""

@@ -1,6 +1,7 @@
 """Interpretation: what each region is, and which shape an object has. Facts go in, answers of kb/asp come out."""
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,13 +14,13 @@ from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
-SHORTEST_WALL = encoding_constant(INTERPRETATION, "shortest_wall")  # squares: what is so long is surely verge
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
-FELT_OBJECT_CONFIDENCE = encoding_constant(INTERPRETATION, "felt_object")  # percent: of a thing felt not to be verge
-SURELY_VERGE = (  # percent: the confidence that something undecided as long as the shortest wall is verge
-    encoding_constant(INTERPRETATION, "verge_least")
-    + encoding_constant(INTERPRETATION, "verge_per_square") * SHORTEST_WALL
-)
+# Percent: of things that were felt and cut out of the bounds (kb.world.objects), so many were objects; counted
+FELT_OBJECT_CONFIDENCE = encoding_constant(INTERPRETATION, "cut_object")
+UNTRIED_MOVABLE = encoding_constant(INTERPRETATION, "untried_movable")  # percent: of objects never tried; counted
+MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is none: 1 of 20, a convention
+SURELY_VERGE = 100 - MIN_OBJECT_BELIEF  # percent: of what is no object then
+LARGE_MASS = 1000  # tenths of squares: of what is surely there
 
 
 class Kinds(NamedTuple):
@@ -59,6 +60,16 @@ def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (),
         elif atom.match("hidden_passage", 2):
             passages.add((args[0], args[1]))
     return Kinds(kind, frozenset(passages))
+
+
+@cache
+def surest_kind(kind: str) -> int:
+    """Return the greatest confidence with which a region is of a kind, in percent: of one felt to be so."""
+    facts = ["region(f,zero,100)", "region(t,nonzero,100)", "region(v,nonzero,100)", "surrounds(f,t)"]
+    facts += ["touched(t,g)", "touched(v,b)"]
+    facts += [fact for region in ("t", "v") for fact in (f"extent({region},1)", f"mass({region},{LARGE_MASS})")]
+    found = [atom for atom in solve([INTERPRETATION], facts) or () if atom.match("kind", 3)]
+    return max((atom.arguments[2].number for atom in found if str(atom.arguments[1]) == kind), default=100)
 
 
 def classify_shapes(

@@ -1,7 +1,7 @@
 """The encodings: where they lie, which files each consists of, their text, and the constants that they state.
 
-An encoding is a file `NAME.lp`, or a folder `NAME` of such files that stand for one program, in the order of their
-names. Rules, records and dumps know it by its name alone.
+An encoding is a file `NAME.lp`, with the files that it shares with others (SHARED_FILES), or a folder `NAME` of such
+files that stand for one program, in the order of their names. Rules, records and dumps know it by its name alone.
 """
 
 from functools import cache
@@ -13,6 +13,11 @@ import clingo
 KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
 ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
 SUFFIX = ".lp"  # of the files of encodings
+# By the name of an encoding: files beside it that are a part of it, and of others, too.
+SHARED_FILES = {"interpretation": ("priors",), "shapes": ("priors",)}
+SHARED_PARTS = frozenset(
+    name for names in SHARED_FILES.values() for name in names
+)  # they are no encodings by themselves
 # Bounded searches look for the best answer from below first (unsatisfiable cores), which ends where branch and bound
 # does not; measured by benchmarks.orders.strategies. Where it does not end, branch and bound tells the best so far.
 CORE_GUIDED = ("--opt-strategy=usc,oll,stratify",)
@@ -34,7 +39,8 @@ class BoundedAnswer(NamedTuple):
 
 def all_encodings() -> tuple[Path, ...]:
     """Return the paths of all our encodings, each a file or a folder, sorted by name."""
-    found = [path for folder in ENCODING_FOLDERS for path in folder.iterdir() if encoding_files(path)]
+    paths = [path for folder in ENCODING_FOLDERS for path in folder.iterdir() if path.stem not in SHARED_PARTS]
+    found = [path for path in paths if encoding_files(path)]
     return tuple(sorted(found, key=lambda path: path.stem))
 
 
@@ -47,10 +53,13 @@ def encoding_path(name: str) -> Path:
 
 
 def encoding_files(encoding: Path) -> tuple[Path, ...]:
-    """Return the files of an encoding, sorted by name."""
+    """Return the files of an encoding: those of a folder sorted by name, or its own file and then those it shares."""
     if encoding.is_dir():
         return tuple(sorted(encoding.glob(f"*{SUFFIX}")))
-    return (encoding,) if encoding.suffix == SUFFIX and encoding.is_file() else ()
+    if encoding.suffix != SUFFIX or not encoding.is_file():
+        return ()
+    shared = SHARED_FILES.get(encoding.stem, ()) if encoding.parent in ENCODING_FOLDERS else ()
+    return (encoding, *(encoding.with_name(f"{name}{SUFFIX}") for name in shared))
 
 
 def encoding_text(encoding: Path) -> str:

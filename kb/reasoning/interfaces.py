@@ -115,6 +115,10 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 }
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
 TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
+CASE_ARGUMENT = word_argument(
+    "case",
+    ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
+)
 # By the name of an encoding: the predicates that users' rules may use there, with their argument types.
 USER_RULE_INTERFACES: Mapping[str, Interface] = {
     "interpretation": {
@@ -126,12 +130,17 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
         ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("hidden_passage", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
+        ("counted_solid", 4): (CASE_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
+        ("counted_object", 6): (CASE_ARGUMENT, *(AMOUNT_ARGUMENT,) * 5),
     },
     "shapes": {
         ("fit", 4): (NODE_ARGUMENT, SHAPE_ARGUMENT, AMOUNT_ARGUMENT, integer_argument("a rank", 1, len(SHAPE_CLASSES))),
         ("open_squares", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
         ("full_squares", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
         ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("counted_first", 7): (AMOUNT_ARGUMENT,) * 7,
+        ("counted_other", 3): (AMOUNT_ARGUMENT,) * 3,
+        ("counted_none", 3): (AMOUNT_ARGUMENT,) * 3,
     },
     "rooms": {
         ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -326,6 +335,7 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("fit", 4),
     }
     | {("described", 2), ("place", 3)}
+    | {("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
 )

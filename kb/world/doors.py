@@ -16,7 +16,6 @@ from utak.geometry import Passage, Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
 from utak.geometry.passages.necks import Segment
 from utak.geometry.raster.components import components
-from utak.kb.perception.interpretation import SHORTEST_WALL
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from utak.kb.perception.regions import extents
 from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
@@ -26,6 +25,7 @@ Indices = tuple[Longs, Longs]  # the rows and the columns of some squares
 ENCODED_DOOR_RATIO = float(
     encoding_constant(KB_ENCODINGS / "rooms.lp", "door_ratio")
 )  # as many times as wide is the floor beside a door
+SHORTEST_WALL = encoding_constant(KB_ENCODINGS / "rooms.lp", "shortest_wall")  # squares: what is so long is a wall
 JAMB_PROBABILITY = 0.75  # squares occupied with at least this probability are taken for parts of one thing; tuned
 WIDTH_UNCERTAINTY = 2 * math.sqrt(2)  # squares: a neck is so much wider at most if its walls end anywhere in 2 squares
 NECK_UNSEEN_MARGIN = 10  # squares: free border laid about the map, since the floor may go on there; convention

@@ -16,7 +16,7 @@ from shapely import Polygon
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
-from utak.kb.language.atoms import short_form, signature_of
+from utak.kb.language.atoms import atom_parts, short_form, signature_of
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.localisation.field_account import Accommodation
@@ -36,7 +36,6 @@ SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, b
 FELT_COLOUR_CONFIDENCE = 99  # percent: belief in a colour that was felt; convention
 SHORTENED = frozenset(name for (name, _), declared in BELIEF_PREDICATES.items() if declared.short)
 ROBOT_AS_NODE = re.compile(rf"\b{ROOT_NODE}\b")  # the robot where it is a node; plans call it utak
-MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movable: more likely it is verge
 
 
 class Places(NamedTuple):
@@ -76,7 +75,9 @@ def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for fact in facts:
         if fact.startswith("kind(") and fact.count(",") == 2:
-            found.setdefault(fact[len("kind(") : fact.index(",")], fact)
+            node, kind, _ = atom_parts(fact)[1]
+            if node not in found or kind == "object":
+                found[node] = fact
     return found
 
 
@@ -165,12 +166,12 @@ def _object_facts(node: Node, model: WorldModel) -> Iterator[str]:
     yield f"node({name})"
     yield f"child({FLOOR_NODE},{name})"
     yield f"kind({name},object,{node.confidence})"
-    if node.confidence < 100:
-        yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
+    others = ((kind, model.kinds.of(node.region, kind)) for kind in ("floor", "verge"))
+    yield from (f"kind({name},{kind},{percent})" for kind, percent in others if percent > 0)
     east, north = model.frame.place_to_utak(*node.patch.centre)
     yield f"offset({name},{hundredths(east)},{hundredths(north)})"
     yield from appearance_facts(node)
-    yield f"movable({name},{node.movable if node.confidence >= MIN_OBJECT_CONFIDENCE else 0})"
+    yield f"movable({name},{round(node.movable * node.confidence / 100)})"
 
 
 def _part_facts(node: Node, model: WorldModel) -> Iterator[str]:

@@ -23,7 +23,7 @@ from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.mapping.patch import Patch
 from utak.kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
 from utak.kb.perception.frame import Frame
-from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, Kinds
+from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, UNTRIED_MOVABLE, Kinds
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
 from utak.kb.perception.regions import Percept
 
@@ -60,7 +60,7 @@ class Node:
     polygon: Any = None  # Its believed outline, map frame, in squares; None while nothing fits
     colour: str | None = None  # The colour felt on it, one lower-case letter; None when it was not touched
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
-    movable: int = 50  # Percent of belief that it can be moved
+    movable: int = UNTRIED_MOVABLE  # Percent of belief that it can be moved, if it is an object
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive

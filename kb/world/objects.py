@@ -22,7 +22,14 @@ from utak.kb.objects.proportions import corrected_shape
 from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from utak.kb.objects.touches import Touches
 from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
-from utak.kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
+from utak.kb.perception.interpretation import (
+    FELT_OBJECT_CONFIDENCE,
+    LONGEST_OBJECT,
+    MIN_OBJECT_BELIEF,
+    UNTRIED_MOVABLE,
+    Kinds,
+    classify_shapes,
+)
 from utak.kb.perception.protrusions import (
     VERGE_TOUCH_COLOUR,
     joined_through_walls,
@@ -33,9 +40,15 @@ from utak.kb.perception.protrusions import (
 from utak.kb.perception.regions import Percept, Region, label_of, region_of
 from utak.kb.perception.seams import cornered_parts, part_by_colour
 from utak.kb.world.facts import colour_facts
-from utak.kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
+from utak.kb.world.model import (
+    PROBABLY_VERGE,
+    Node,
+    WorldModel,
+    count_open_squares,
+    free_squares,
+    occupied_squares,
+)
 
-MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
 LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned
 # Likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
 PLAY_PROBABILITY = 0.05
@@ -56,7 +69,8 @@ class MapRegions(NamedTuple):
 def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
     """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own."""
     percept, labels, kinds, seams = regions
-    bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
+    names = [f"part{n}" for n in range(int(labels.max()) + 1)]
+    bounds = np.array([kinds.of(name, "verge") >= PROBABLY_VERGE for name in names])[labels]
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
@@ -68,7 +82,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
         label = int(labels.max()) + 1
         labels[thing] = label
         separated.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
-        kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE}
+        kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE, "verge": 100 - FELT_OBJECT_CONFIDENCE}
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
     return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), (*seams, *unsettled))
@@ -300,7 +314,7 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
 
 def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     """Return the node of an object that was held."""
-    movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else 50
+    movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else UNTRIED_MOVABLE
     return Node(
         name=load.name,
         kind="object",

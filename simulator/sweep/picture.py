@@ -46,7 +46,7 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
         f'viewBox="0 0 {width:.0f} {height:.0f}" role="img" aria-label="{what}">',
         f"<style>{STYLE}</style>",
         f'<rect width="{width:.0f}" height="{height:.0f}" fill="#fff"/>',
-        _text(left, TITLE_HEIGHT - 8, "runs as expected, and their commands", "title"),
+        svg_text(left, TITLE_HEIGHT - 8, "runs as expected, and their commands", "title"),
         *(part for _, part in legend),
     ]
     for number, name in enumerate(scenarios):
@@ -54,10 +54,10 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
         if number % 2 == 0:
             size = f'width="{right + PANEL_WIDTH - left:.1f}" height="{row_height:.1f}"'
             parts.append(f'<rect class="band" x="{left:.1f}" y="{y:.1f}" {size}/>')
-        parts.append(_text(left - 8, y + row_height / 2 + 4, _short_name(name), anchor="end", title=name))
+        parts.append(svg_text(left - 8, y + row_height / 2 + 4, _short_name(name), anchor="end", title=name))
     parts += _axis(percent, [0, 20, 40, 60, 80, 100], top, bottom, "success rate, percent (bar: 95 % Wilson interval)")
     parts += _axis(commands, ticks, top, bottom, "commands, logarithmic: median (bar: to the 95th percentile)")
-    parts.append(_text(left - 8, top - 6, "scenario", anchor="end"))
+    parts.append(svg_text(left - 8, top - 6, "scenario", anchor="end"))
     for count in counts:
         if count.noise is not None:
             number = noises.index(count.noise)
@@ -97,7 +97,7 @@ def _legend(noises: Sequence[float], left: float) -> Iterator[tuple[int, str]]:
         if x + width > end and x > left:
             x, row = left, row + 1
         y = TITLE_HEIGHT + NOISES_ROW_HEIGHT * (row + 0.5)
-        yield row, _mark(number, x + MARK_RADIUS, y) + _text(x + 3 * MARK_RADIUS, y + 4, label)
+        yield row, svg_mark(number, x + MARK_RADIUS, y) + svg_text(x + 3 * MARK_RADIUS, y + 4, label)
         x += width
 
 
@@ -106,11 +106,11 @@ def _axis(scale: Scale, ticks: Sequence[float], top: float, bottom: float, label
     left, right = scale(ticks[0]), scale(ticks[-1])
     parts = []
     for value in ticks:
-        parts.append(_line(scale(value), top, scale(value), bottom, "grid"))
-        parts.append(_line(scale(value), bottom, scale(value), bottom + TICK_LENGTH, "axis"))
-        parts.append(_text(scale(value), bottom + 18, f"{value:g}", anchor="middle"))
-    parts.append(_line(left, bottom, right, bottom, "axis"))
-    parts.append(_text((left + right) / 2, bottom + 38, label, anchor="middle"))
+        parts.append(svg_line(scale(value), top, scale(value), bottom, "grid"))
+        parts.append(svg_line(scale(value), bottom, scale(value), bottom + TICK_LENGTH, "axis"))
+        parts.append(svg_text(scale(value), bottom + 18, f"{value:g}", anchor="middle"))
+    parts.append(svg_line(left, bottom, right, bottom, "axis"))
+    parts.append(svg_text((left + right) / 2, bottom + 38, label, anchor="middle"))
     return parts
 
 
@@ -122,15 +122,15 @@ def _marks(count: SweepCount, number: int, y: float, percent: Scale, commands: S
         ends = f"{100 * interval[0]:.0f} to {100 * interval[1]:.0f} %"
         title = f"{where}: {count.passed} of {count.judged} as expected ({ends})"
         yield _bar(percent(100 * interval[0]), percent(100 * interval[1]), y, number)
-        yield _mark(number, percent(100 * rate), y, title)
+        yield svg_mark(number, percent(100 * rate), y, title)
     if steps:
         upper = upper_percentile(steps)
         title = f"{where}: {median(steps):g} commands in the median, {upper} at the 95th percentile"
         yield _bar(commands(median(steps)), commands(upper), y, number)
-        yield _mark(number, commands(median(steps)), y, title)
+        yield svg_mark(number, commands(median(steps)), y, title)
 
 
-def _mark(number: int, x: float, y: float, title: str = "") -> str:
+def svg_mark(number: int, x: float, y: float, title: str = "") -> str:
     """Return the mark of a noise at (x, y). number : of the noise."""
     colour = MARK_COLOURS[number % len(MARK_COLOURS)]
     shape = MARK_SHAPES[number % len(MARK_SHAPES)]
@@ -154,11 +154,12 @@ def _bar(start: float, end: float, y: float, number: int) -> str:
     return f'<path class="bar" d="{path}" stroke="{colour}" fill="none"/>'
 
 
-def _line(x1: float, y1: float, x2: float, y2: float, kind: str) -> str:
+def svg_line(x1: float, y1: float, x2: float, y2: float, kind: str) -> str:
+    """Return a line between two points, in pixels; `kind` is its class in the style sheet."""
     return f'<line class="{kind}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"/>'
 
 
-def _text(x: float, y: float, text: str, kind: str = "", anchor: str = "start", title: str = "") -> str:
+def svg_text(x: float, y: float, text: str, kind: str = "", anchor: str = "start", title: str = "") -> str:
     """Return a text; the title is shown when the pointer rests on it."""
     marked = f' class="{kind}"' if kind else ""
     inner = f"<title>{_escaped(title)}</title>" if title else ""

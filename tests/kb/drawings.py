@@ -55,7 +55,7 @@ def known_model(rows: list[str], objects: bool = True) -> WorldModel:
     model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret_regions(percept), ())
     nodes = [
         Node(f"o{n}", "object", 95, region.name, patch_of(labels == label_of(region.name), view), 0)
-        for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") == 95), 1)
+        for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") > 50), 1)
     ]
     return WorldModel(Frame(), (0.5, 0.5), view, labels, percept, model.kinds, tuple(nodes) if objects else ())
 

@@ -25,7 +25,9 @@ def predicates(encoding: Path) -> set[tuple[str, int]]:
 
     class Collector(clingo.ast.Transformer):
         def visit_SymbolicAtom(self, node: clingo.ast.AST) -> clingo.ast.AST:  # noqa: N802
-            found.add((node.symbol.name, len(node.symbol.arguments)))
+            pooled = node.symbol.ast_type == clingo.ast.ASTType.Pool
+            for symbol in node.symbol.arguments if pooled else [node.symbol]:
+                found.add((symbol.name, len(symbol.arguments)))
             return node
 
     parts: list[clingo.ast.AST] = []

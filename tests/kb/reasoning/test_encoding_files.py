@@ -1,5 +1,6 @@
 """Encodings are files or folders of files; numbers that an encoding states are read from it, and only from it."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -7,12 +8,21 @@ import pytest
 from utak.kb.perception.interpretation import (
     FELT_OBJECT_CONFIDENCE,
     LONGEST_OBJECT,
-    SHORTEST_WALL,
     SURELY_VERGE,
+    UNTRIED_MOVABLE,
     interpret_regions,
+    surest_kind,
 )
 from utak.kb.perception.regions import Percept, Region
-from utak.kb.reasoning.encodings import all_encodings, encoding_constant, encoding_files, encoding_path, encoding_text
+from utak.kb.reasoning.encodings import (
+    KB_ENCODINGS,
+    SHARED_PARTS,
+    all_encodings,
+    encoding_constant,
+    encoding_files,
+    encoding_path,
+    encoding_text,
+)
 from utak.kb.reasoning.solver import solve, solve_within
 
 
@@ -60,16 +70,34 @@ def test_an_unknown_constant_is_refused(tmp_path: Path) -> None:
         encoding_constant(rules, "longest")
 
 
-@pytest.mark.parametrize(
-    ("extent", "verge"), [(SHORTEST_WALL, SURELY_VERGE), (LONGEST_OBJECT, 92), (LONGEST_OBJECT + 1, 95)]
-)
-def test_constants_agree_with_the_answers_of_the_interpretation(extent: int, verge: int) -> None:
-    region = Region("r", True, 100, True, extent, 60)
-    kinds = interpret_regions(Percept((region,), frozenset(), frozenset()))
-    assert kinds.of("r", "verge") == verge
-    felt = interpret_regions(Percept((region,), frozenset(), frozenset()), [("r", "g")])
-    # What is longer than any object is verge, and a thing is in it.
-    assert felt.of("r", "object") == (FELT_OBJECT_CONFIDENCE if extent <= LONGEST_OBJECT else 0)
+def test_encodings_share_the_counted_priors_as_a_part_of_each() -> None:
+    shared = [path.name for path in encoding_files(encoding_path("shapes"))]
+    assert shared == ["shapes.lp", "priors.lp"]
+    assert encoding_files(encoding_path("interpretation"))[1:] == encoding_files(encoding_path("shapes"))[1:]
+    assert not {path.stem for path in all_encodings()} & SHARED_PARTS
+
+
+def test_what_was_counted_is_never_certain() -> None:
+    assert 0 < UNTRIED_MOVABLE < 100 and 0 < FELT_OBJECT_CONFIDENCE < 100
+    found = re.findall(r"^ +[^%]*, (\d+);?  % (\d+) / (\d+)$", (KB_ENCODINGS / "priors.lp").read_text(), re.MULTILINE)
+    assert len(found) > 50
+    for thousandths, true, of in (tuple(map(int, row)) for row in found):
+        assert 0 < thousandths < 1000 and true <= of
+        assert abs(thousandths - 1000 * (true + 1) / (of + 2)) <= 1
+
+
+@pytest.mark.parametrize("mass", [0, 4, 5, 29, 30, 100, 10_000])
+@pytest.mark.parametrize("extent", [1, 2, 3, 8, LONGEST_OBJECT, LONGEST_OBJECT + 1, 200])
+@pytest.mark.parametrize("touched", [(), ("g",), ("b",), ("b", "g")])
+@pytest.mark.parametrize("surrounds", [(), (("f", "r"),), (("r", "f"),)])
+def test_the_kinds_of_a_region_are_100_percent_together(mass, extent, touched, surrounds) -> None:  # type: ignore[no-untyped-def]
+    regions = Region("r", True, 100, True, extent, mass), Region("f", False, 100, True, 30, 0)
+    kinds = interpret_regions(Percept(regions, frozenset(), frozenset(surrounds)), [("r", one) for one in touched])
+    assert sum(kinds.kind["r"].values()) == 100 and max(kinds.kind["r"].values()) < 100
+
+
+def test_the_surest_region_of_a_kind_is_one_that_was_felt() -> None:
+    assert surest_kind("verge") >= SURELY_VERGE and surest_kind("object") > 90 and surest_kind("floor") == 100
 
 
 def test_a_bounded_search_tells_the_best_so_far_where_it_does_not_end() -> None:

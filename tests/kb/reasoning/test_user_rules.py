@@ -93,6 +93,13 @@ def test_a_contradicting_rule_is_refused_at_its_place(tmp_path: Path, rules: str
     assert CONTRADICTIONS[rules] in complaint(tmp_path, rules)
 
 
+def test_rules_may_read_what_was_counted_and_not_change_it(tmp_path: Path) -> None:
+    read = "kind(R, object, W/10) :- region(R, zero, _), counted_solid(felt_verge, _, _, W)."
+    assert any(atom.startswith("kind(a,object,") for atom in answered(tmp_path, read) or ())
+    assert "counted_none" in refusal(tmp_path, "counted_none(0, 3, 500).")
+    assert "unknown case" in complaint(tmp_path, "kind(R, object, 7) :- region(R, _, _), counted_solid(tall, _, _, _).")
+
+
 def test_a_rule_that_contradicts_itself_is_refused_when_read(tmp_path: Path) -> None:
     for rules in (":- #true.", "a :- not a.", "n(1..3). :- n(3)."):
         assert "leaves no answer, whatever is given" in refusal(tmp_path, rules)

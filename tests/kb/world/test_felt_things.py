@@ -8,7 +8,6 @@ from tests.kb.drawings import known_model
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 from utak.kb.body import Grasp, Move, Push, Release
 from utak.kb.knowledge import Knowledge
-from utak.kb.perception.interpretation import FELT_OBJECT_CONFIDENCE
 from utak.kb.world.objects import MapRegions, separate_felt_things
 
 Mask = NDArray[np.bool_]
@@ -59,7 +58,7 @@ def things_in(rows: list[str], felt: set[tuple[int, int]]) -> list[Mask]:
     model, marks = known_model(rows, objects=False), marks_of(rows)
     colours = {(column + model.view.west, row + model.view.south): str(marks[row, column]) for row, column in felt}
     regions = separate_felt_things(MapRegions(model.percept, model.labels, model.kinds), model.view, colours)
-    names = [name for name, kind in regions.kinds.kind.items() if kind == {"object": FELT_OBJECT_CONFIDENCE}]
+    names = [name for name in regions.kinds.kind if name not in model.kinds.kind]
     return [regions.labels == int(name.removeprefix("part")) for name in names]
 
 

@@ -140,7 +140,7 @@ ROOM = [
 def test_a_square_seen_from_one_side_is_believed() -> None:
     model = walked(ROOM, [(0, 2), (0, 2), (-2, 0), (3, 0)], colour="g").model
     thing = model.objects[0]
-    assert thing.confidence == 95
+    assert thing.confidence >= 95  # it is taken without being felt first (utak.planner.goals.placement)
     assert thing.open == 0
     assert thing.patch.squares() == {(x, y) for x in (-3, -2, -1) for y in (1, 2, 3)}
     assert max(thing.shape, key=lambda s: (s != "polygon", s != "rectangle", thing.shape[s])) == "square"

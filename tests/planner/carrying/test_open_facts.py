@@ -13,7 +13,7 @@ from utak.planner.decision import impossible
 from utak.planner.sights.walls import FeelingScope, unfelt_walls
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
-WITH_A_THING = ["bbbbbbbbb", "b.......b", "b..U.gg.b", "b....gg.b", "b.......b", "bbbbbbbbb"]
+WITH_A_THING = ["bbbbbbbbb", "b.......b", "b..U.gg.b", "b....gg.b", "b....gg.b", "b.......b", "bbbbbbbbb"]
 GIVEN_UP = impossible("no way leads there", "no way leads there")
 
 

@@ -98,8 +98,8 @@ def test_what_settles_a_goal_by_a_rule_is_done_once_the_robot_is_stuck(tmp_path:
     facts = ("horizon(2)", "goal(g1)", "thing(o1)", "place(o1, here)", "place(o1, g1_p)", "fulfils(o1, g1_p, g1)")
     assert propose(facts, [rules]).errands == ()
     assert [str(errand) for errand in propose((*facts, "stuck(plan, limit)"), [rules]).errands] == ["feel(g1)"]
-    episode = utak.Run(utak.Scenario.read(EXAMPLES / "push_square_next_room"), rules=[rules], max_steps=2).finish()
-    said = episode.why("plan(0, feel(g1))", step=1).text("long")
+    episode = utak.Run(utak.Scenario.read(EXAMPLES / "push_square_next_room"), rules=[rules], max_steps=3).finish()
+    said = episode.why("plan(0, feel(g1))", step=2).text("long")
     assert re.search(r"came_to\(pursue\(g1\),limit\): .* the rule at .*own.lp:1 leaves no plan", said)
 
 

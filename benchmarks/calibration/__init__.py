@@ -1,0 +1,13 @@
+"""Calibration: whether what is believed with so many percent is true so often, in random worlds of all kinds.
+
+Modules, in reading order:
+
+dealt       which worlds
+figures     the class of a polygon
+truth       what a believed node is in truth
+statements  the table of predicates whose statements are compared with the truth
+runs        runs of the robot that are looked at
+table       reliability: the table and JSON
+picture     the same as an SVG picture
+__main__    the program
+"""

@@ -1,0 +1,116 @@
+"""Runs of the robot in which each moment is looked at with the truth beside it."""
+
+import json
+import signal
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from benchmarks.calibration.dealt import DealtWorld, made
+from benchmarks.calibration.statements import Moment, moment_of
+from benchmarks.calibration.truth import TableTruth, frame_of
+from benchmarks.claims.asked import Asked
+from benchmarks.worlds.scenes import RULES_FILE, write
+from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Session
+from utak.simulator.scenario.scenario import read_scenario
+from utak.simulator.scenario.settings import Settings
+
+
+class Look(NamedTuple):
+    """The moment after an impression: belief, truth, and what encodings were given."""
+
+    moment: Moment
+    model: Any  # kb.world.model.WorldModel
+    frame: Any  # benchmarks.harness.beliefs.TableFrame
+    step: int
+    decisions: tuple[tuple[str, tuple[str, ...]], ...]  # what each encoding was given at this step: its name, and facts
+
+
+class Ended(NamedTuple):
+    """The end of a run, with what was noted of it."""
+
+    asked: Asked
+    noise: float
+    verdict: str  # or "time", or the name of an error
+    achieved: bool
+    steps: int
+    looks: tuple[Any, ...]  # what was noted at the chosen moments, first to last
+
+    @property
+    def name(self) -> str:
+        """The name of the world, with the noise where there is some."""
+        return f"{self.asked.name} at noise {self.noise:g}" if self.noise else self.asked.name
+
+    def line(self) -> str:
+        """Return the end as JSON, without the looks."""
+        told = {"world": self.asked.name, "noise": self.noise, "verdict": self.verdict}
+        return json.dumps(told | {"achieved": self.achieved, "steps": self.steps})
+
+
+class TimeOverError(Exception):
+    """A run took more than its seconds."""
+
+
+def watched(asked: Asked, noise: float, max_steps: int, seconds: int, note: Callable[[Look], Any], parts: int) -> Ended:
+    """Run the robot in a world and return what `note` returned at parts + 1 moments, from the first to the last step.
+
+    seconds : after which a run is ended, and its last step so far counts; 0 for no limit.
+    """
+    dealt = made(asked)
+    noted: list[Any] = []
+    verdict, achieved = "time", False
+    with tempfile.TemporaryDirectory(prefix="utak-calibration-") as folder:
+        scenario = read_scenario(write(dealt.world, Path(folder)))
+        rules = Path(folder) / RULES_FILE
+        kb_files = (str(rules),) if rules.exists() else ()
+        settings = Settings(seed=asked.seed, noise=noise, max_steps=max_steps, kb_files=kb_files)
+        session = Session(scenario, settings, make_robot, EpisodeLog(None))
+
+        written: dict[tuple[int, int], list[Any]] = {}
+
+        def look(at: Session) -> None:
+            noted.append(note(_look(dealt, at, _decisions(at.line, written))))
+
+        before = signal.signal(signal.SIGALRM, _ring)
+        signal.alarm(seconds)
+        try:
+            result = session.run(look)
+            verdict, achieved = result.verdict, bool(result.achieved)
+        except TimeOverError:
+            pass
+        except Exception as error:  # a run that breaks is a result, too
+            verdict = f"{type(error).__name__}: {error}"
+        finally:
+            signal.alarm(0)
+            signal.signal(signal.SIGALRM, before)
+    last = len(noted) - 1
+    chosen = dict.fromkeys(round(last * part / parts) for part in range(parts + 1)) if noted else {}
+    return Ended(asked, noise, verdict, achieved, max(0, last), tuple(noted[number] for number in chosen))
+
+
+def _ring(number: int, frame: object) -> None:
+    raise TimeOverError
+
+
+def _decisions(
+    line: dict[str, Any], written: dict[tuple[int, int], list[Any]]
+) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return what encodings were given at a step. written : decisions of earlier steps, by step and index; added to."""
+    step, found = line["step"], []
+    for index, entry in enumerate(line["belief"]["solved"]):
+        whole = written[tuple(entry[1])] if len(entry) == 2 else entry
+        written[step, index] = whole
+        found.append((whole[0], tuple(whole[1])))
+    return tuple(found)
+
+
+def _look(dealt: DealtWorld, session: Session, decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> Look:
+    """Return the present moment of a run."""
+    world, model = dealt.world, session.robot.model  # type: ignore[attr-defined]
+    truth = TableTruth(dealt, dict(session.table.polygons), session.table.utak)
+    frame = frame_of(model, truth, (world.utak.x, world.utak.y))
+    facts = tuple(fact.rstrip(".") for fact in session.line["belief"]["facts"])
+    return Look(moment_of(model, facts, truth, frame), model, frame, session.line["step"], decisions)

@@ -1,0 +1,92 @@
+"""The truth of one moment of a run, by square of the table: what lies where, and what a believed node is."""
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from shapely import Polygon
+
+from benchmarks.calibration.dealt import DealtWorld
+from benchmarks.calibration.figures import NO_CLASS, class_of
+from benchmarks.harness.beliefs import TableFrame, table_frame
+from benchmarks.worlds.placing import digital
+from utak.geometry.kernels.arrays import Bools, Square
+
+VERGE, FLOOR = "verge", "floor"
+# Other things cover at least so great a part of the squares that the first one covers: then a node is several things.
+SEVERAL_SHARE = 0.25
+
+
+class NodeTruth(NamedTuple):
+    """The truth about a believed node, or a region."""
+
+    kind: str  # object, verge or floor: what covers most of its squares; floor only where nothing else covers any
+    thing: str | None  # the thing that covers most of its squares, if its kind is object
+    shape: str | None  # the class of the thing; NO_CLASS for several things together; None where there is none
+
+
+class TableTruth:
+    """The truth of one moment."""
+
+    def __init__(self, dealt: DealtWorld, polygons: dict[str, Polygon], utak: tuple[float, float]) -> None:
+        """Take the movable things as they lie now, and where the robot stands, both in the table frame."""
+        world = dealt.world
+        self.doors, self.utak = dealt.doors, utak
+        self.width, self.height = world.plan.width, world.plan.height
+        self.heading = float(world.heading)
+        self.floor = world.plan.floor
+        self.things = {thing.name: thing for thing in world.things}
+        self.polygons = {name: polygons.get(name, thing.polygon) for name, thing in self.things.items()}
+        self._verge = _digital(world.plan.verge, self.width, self.height)
+        self._covers = {name: _digital(shape, self.width, self.height) for name, shape in self.polygons.items()}
+
+    def of(self, squares: Iterable[Square]) -> NodeTruth:
+        """Return what a node with some squares of the table is."""
+        there = list(squares)
+        count = Counter({name: self._covered(cover, there) for name, cover in self._covers.items()})
+        verge = sum(1 for square in there if self._is_verge(square))
+        (first, most), *others = [*count.most_common(), ("", 0)]
+        if max(most, verge) == 0:
+            return NodeTruth(FLOOR, None, None)
+        if sum(count.values()) <= verge:
+            return NodeTruth(VERGE, None, None)
+        several = sum(number for _, number in others) >= SEVERAL_SHARE * most
+        return NodeTruth("object", first, NO_CLASS if several else class_of(self.polygons[first]))
+
+    def about(self, name: str) -> set[Square]:
+        """Return the squares of a thing, or of the verge, within the table."""
+        rows, columns = np.nonzero(self._verge if name == VERGE else self._covers[name])
+        return set(zip(columns.tolist(), rows.tolist(), strict=True))
+
+    @property
+    def robot_squares(self) -> set[Square]:
+        """The squares on which the robot may be said to stand: two or four on a line of the grid."""
+        columns, rows = ({math.floor(v - 1e-6), math.floor(v + 1e-6)} for v in self.utak)
+        return {(column, row) for column in columns for row in rows}
+
+    def _covered(self, cover: Bools, squares: list[Square]) -> int:
+        return sum(1 for x, y in squares if 0 <= x < self.width and 0 <= y < self.height and cover[y, x])
+
+    def _is_verge(self, square: Square) -> bool:
+        x, y = square
+        return not (0 <= x < self.width and 0 <= y < self.height) or bool(self._verge[y, x])
+
+
+_DIGITAL: dict[bytes, Bools] = {}
+
+
+def _digital(shape: Any, width: int, height: int) -> Bools:
+    """Return the squares of a shape, (height, width) bool; those of a shape seen before are remembered."""
+    key = shape.wkb + bytes([width % 256, height % 256])
+    if key not in _DIGITAL:
+        if len(_DIGITAL) > 4096:
+            _DIGITAL.clear()
+        _DIGITAL[key] = np.asarray(digital(shape, width, height))
+    return _DIGITAL[key]
+
+
+def frame_of(model: Any, truth: TableTruth, origin: tuple[float, float]) -> TableFrame:
+    """Return where the table's squares lie in the map of a model. origin : where the robot woke, table frame."""
+    return table_frame(model, origin, truth.utak, truth.heading)[0]

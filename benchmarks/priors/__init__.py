@@ -1,0 +1,10 @@
+"""Priors, counted: how often each alternative was true in random worlds, given what was measured.
+
+Modules, in reading order:
+
+measures  what confidences are conditioned on, with what is true
+bins      into which bins measures fall
+count     how often each alternative was true
+written   the file kb/asp/priors.lp
+__main__  the program
+"""

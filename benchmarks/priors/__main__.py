@@ -1,0 +1,116 @@
+"""Count priors in random worlds and write kb/asp/priors.lp.
+
+    python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [-o kb/asp/priors.lp]
+
+Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
+alike: the first step, the last one, and those in between that part the run evenly. Progress goes to stderr. --samples
+keeps what was measured, a JSON line a moment; with --recount it is counted again, for other bins, without any run.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from itertools import chain
+from pathlib import Path
+from typing import NamedTuple
+
+from benchmarks.calibration.dealt import dealt
+from benchmarks.calibration.runs import Look, watched
+from benchmarks.calibration.statements import statements
+from benchmarks.harness.judging import CHECKOUT
+from benchmarks.priors.count import Counted, counted_classes, counted_kinds
+from benchmarks.priors.measures import FitSeen, RegionSeen, fits_seen, regions_seen
+from benchmarks.priors.written import text
+from utak.simulator.run.warming import warm_all
+
+PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
+
+
+class CountedMoment(NamedTuple):
+    """The things of one moment that are counted."""
+
+    regions: tuple[RegionSeen, ...]
+    fits: tuple[FitSeen, ...]
+    untried: tuple[bool, ...]  # of the objects never moved, which are objects in truth: whether each can be moved
+
+
+def noted(look: Look) -> CountedMoment:
+    """Return what is counted of a moment."""
+    nodes, tried = look.moment.nodes, {node.name for node in look.model.objects if node.moved or node.stuck}
+    untried = (
+        statement.true
+        for statement in statements(look.moment)
+        if statement.predicate == "movable/2"
+        and (node := statement.fact.partition("(")[2].partition(",")[0]) not in tried
+        and nodes[node].kind == "object"
+    )
+    return CountedMoment(tuple(regions_seen(look)), tuple(fits_seen(look)), tuple(untried))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the worlds, count, and write the file; return 0."""
+    given = _parser().parse_args(arguments)
+    samples, moments = given.samples, list[CountedMoment]()
+    if given.recount:
+        moments = [_read(line) for line in samples.read_text().splitlines()]
+    else:
+        warm_all()
+    for number, asked in enumerate(() if given.recount else dealt(given.worlds, given.seed), 1):
+        noise = given.noise[(number - 1) % len(given.noise)]
+        ended = watched(asked, noise, given.max_steps, given.seconds, noted, given.parts)
+        moments += ended.looks
+        if samples:
+            with samples.open("a") as file:
+                file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
+        print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
+    command = (
+        f"python -m benchmarks.priors --worlds {given.worlds} --seed {given.seed} --max-steps {given.max_steps} "
+        f"--parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
+    )
+    given.output.write_text(written(moments, command, given.worlds))
+    return 0
+
+
+def written(moments: Sequence[CountedMoment], command: str, worlds: int) -> str:
+    """Return the file of priors that some moments give."""
+    regions = [region for moment in moments for region in moment.regions]
+    fits = [fit for moment in moments for fit in moment.fits]
+    untried = list(chain.from_iterable(moment.untried for moment in moments))
+    movable = Counted("movable", (), sum(untried), len(untried))
+    counts = (
+        f"{worlds} worlds of all kinds, {len(moments)} moments, {len(regions)} regions, {len(fits)} things with fits"
+    )
+    return text([*counted_kinds(regions), *counted_classes(fits)], movable, [command, counts])
+
+
+def _read(line: str) -> CountedMoment:
+    """Return a moment from its line of JSON."""
+    regions, fits, untried = json.loads(line)
+    return CountedMoment(
+        tuple(RegionSeen(*region) for region in regions),
+        tuple(FitSeen(node, tuple(map(tuple, found)), *rest) for node, found, *rest in fits),
+        tuple(untried),
+    )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.priors", description="Count priors in random worlds.")
+    parser.add_argument("--worlds", type=int, default=250, help="how many (%(default)s)")
+    parser.add_argument("--seed", type=int, default=5000, help="of the worlds (%(default)s)")
+    parser.add_argument("--noise", type=_numbers, default=[0.0, 0.0, 0.0, 0.0, 0.05], help="with commas, in turn")
+    parser.add_argument("--max-steps", type=int, default=60, help="most commands (%(default)s)")
+    parser.add_argument("--seconds", type=int, default=600, help="most seconds a world, 0 for no limit (%(default)s)")
+    parser.add_argument("--parts", type=int, default=6, help="into how many parts moments part a run (%(default)s)")
+    parser.add_argument("--samples", type=Path, help="what was measured, a JSON line a moment; added to")
+    parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
+    parser.add_argument("-o", "--output", type=Path, default=PRIORS_FILE, help="the file (%(default)s)")
+    return parser
+
+
+def _numbers(text: str) -> list[float]:
+    return [float(part) for part in text.split(",")]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

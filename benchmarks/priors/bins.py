@@ -1,0 +1,53 @@
+"""Into which bins measures fall: the least and the greatest value of each, whole numbers, the bins without gaps.
+
+The bins are a convention: narrow where what is counted changes quickly, and wide enough that each holds many things.
+"""
+
+from typing import NamedTuple
+
+ANY = 1_000_000  # above all measures
+
+
+class Bin(NamedTuple):
+    """The values from `least` to `most`."""
+
+    least: int
+    most: int
+
+    def holds(self, value: int) -> bool:
+        """Return whether a value falls into the bin."""
+        return self.least <= value <= self.most
+
+
+def bins(*begin: int) -> tuple[Bin, ...]:
+    """Return the bins that begin at some values, the last one open.
+
+    >>> bins(0, 3)
+    (Bin(least=0, most=2), Bin(least=3, most=1000000))
+    """
+    ends = [*(value - 1 for value in begin[1:]), ANY]
+    return tuple(map(Bin, begin, ends))
+
+
+def bin_of(value: int, among: tuple[Bin, ...]) -> Bin:
+    """Return the bin into which a value falls."""
+    return next(one for one in among if one.holds(value))
+
+
+WHOLE = bins(0)
+# By case of a region (kb/asp/interpretation.lp): bins of its mass, tenths of squares, for whether it is floor.
+MASS = {"undecided": bins(0, 5, 15, 30, 60, 120), "isolated": bins(0, 5, 15, 30, 60, 120)}
+# For whether it is an object: bins of its extent, squares, and of its mass. An island of the verge is small mostly.
+EXTENT = {"undecided": bins(0, 3, 5, 7, 9, 13, 17, 25)}
+OBJECT_MASS = {"isolated": bins(0, 60)}
+CASES = (
+    *("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
+    "cut",
+)
+# Of a thing: squares of misfit of its first class, how far that is ahead, open squares for each 100 sure ones.
+MISFIT = bins(0, 1, 3)
+# By the bin of misfit: those of the lead and of the open squares, fewer where few things fall.
+LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
+OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 26, 101)), strict=True))
+NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
+BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one

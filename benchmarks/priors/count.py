@@ -1,0 +1,101 @@
+"""Counts: how often each alternative was true, given the measures that confidences are conditioned on."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from itertools import product
+from typing import NamedTuple
+
+from benchmarks.calibration.figures import NO_CLASS, RECTANGLE
+from benchmarks.priors.bins import (
+    BEHIND,
+    CASES,
+    EXTENT,
+    LEAD,
+    MASS,
+    MISFIT,
+    NONE_MISFIT,
+    OBJECT_MASS,
+    OPENNESS,
+    WHOLE,
+    Bin,
+    bin_of,
+)
+from benchmarks.priors.measures import FitSeen, RegionSeen
+
+THOUSAND = 1000
+MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
+NO_SURE_SQUARE = 1000  # openness where no square is sure, as in kb/asp/shapes.lp
+
+
+class Counted(NamedTuple):
+    """One row of the priors: of `of` things with such measures, `true` were so."""
+
+    predicate: str
+    given: tuple[str | Bin, ...]
+    true: int
+    of: int
+
+    @property
+    def thousandths(self) -> int:
+        """The chance by Laplace's rule, in thousandths: neither 0 nor 1000, however many were counted."""
+        return min(THOUSAND - 1, max(1, round(THOUSAND * (self.true + 1) / (self.of + 2))))
+
+
+def counted_kinds(regions: Iterable[RegionSeen]) -> Iterator[Counted]:
+    """Yield how many regions of each case are no floor, and how many of those are objects."""
+    seen = list(regions)
+    for case in CASES:
+        own = [region for region in seen if region.situation == case]
+        for mass in MASS.get(case, WHOLE):
+            there = [region for region in own if mass.holds(region.mass)]
+            yield Counted("counted_solid", (case, mass), sum(one.truth != "floor" for one in there), len(there))
+    for case in CASES:
+        own = [region for region in seen if region.situation == case and region.truth != "floor"]
+        for extent, mass in product(EXTENT.get(case, WHOLE), OBJECT_MASS.get(case, WHOLE)):
+            there = [region for region in own if extent.holds(region.extent) and mass.holds(region.mass)]
+            objects = sum(one.truth == "object" for one in there)
+            yield Counted("counted_object", (case, extent, mass), objects, len(there))
+
+
+def lead(fit: FitSeen) -> int:
+    """Return by how many squares of misfit the first class is ahead of the next one, MAX_LEAD at most."""
+    first = fit.fits[0][1]
+    return min([MAX_LEAD, *(misfit - first for _, misfit in fit.fits[1:])])
+
+
+def openness(fit: FitSeen) -> int:
+    """Return the open squares for each 100 sure ones."""
+    return 100 * fit.open // fit.full if fit.full else NO_SURE_SQUARE
+
+
+def first_is_true(fit: FitSeen) -> bool:
+    """Return whether the first class is the true one; a RECTANGLE counts as either of square and brick."""
+    first = fit.fits[0][0]
+    return first == fit.shape or (fit.shape == RECTANGLE and first in ("square", "brick"))
+
+
+def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
+    """Yield how often the first class was the true one, and which else was where it was not."""
+    seen = [fit for fit in fits if fit.shape is not None]
+    for misfit in MISFIT:
+        for ahead in LEAD[misfit]:
+            for share in OPENNESS[misfit]:
+                there = [
+                    fit
+                    for fit in seen
+                    if misfit.holds(fit.fits[0][1]) and ahead.holds(lead(fit)) and share.holds(openness(fit))
+                ]
+                true = sum(map(first_is_true, there))
+                yield Counted("counted_first", (misfit, ahead, share), true, len(there))
+    wrong = [fit for fit in seen if not first_is_true(fit)]
+    true, offered = Counter[Bin](), Counter[Bin]()
+    for fit in wrong:
+        for shape, misfit in fit.fits[1:]:
+            behind = bin_of(misfit - fit.fits[0][1], BEHIND)
+            offered[behind] += 1
+            true[behind] += shape == fit.shape
+    for behind in BEHIND:
+        yield Counted("counted_other", (behind,), true[behind], offered[behind])
+    for misfit in NONE_MISFIT:
+        there = [fit for fit in wrong if misfit.holds(fit.fits[0][1])]
+        yield Counted("counted_none", (misfit,), sum(fit.shape == NO_CLASS for fit in there), len(there))

@@ -1,0 +1,103 @@
+"""The file of priors: ASP facts, a group for each predicate, a row for each bin, with the number of things counted."""
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+
+from benchmarks.priors.bins import Bin
+from benchmarks.priors.count import Counted
+
+# By predicate: its arguments; what it says, as documentation; the same as words of explanations.
+WORDS = {
+    "counted_solid": (
+        "K, L, U, W",
+        "Of 1000 regions of case K with a mass of L to U tenths of squares, W were no floor.",
+        "of 1000 regions of case {K} with {L/10} to {U/10} squares expected to be occupied, {W} were no floor",
+    ),
+    "counted_object": (
+        "K, L1, L2, M1, M2, W",
+        "Of 1000 regions of case K that are no floor, L1 to L2 squares long with a mass of M1 to M2 tenths of squares, "
+        "W were objects.",
+        "of 1000 regions of case {K} that are no floor, {L1} to {L2} squares long, with {M1/10} to {M2/10} squares "
+        "expected to be occupied, {W} were objects",
+    ),
+    "counted_first": (
+        "M1, M2, D1, D2, P1, P2, W",
+        "Of 1000 things whose first class leaves M1 to M2 squares wrong and is D1 to D2 squares ahead, with P1 to P2 "
+        "open squares for 100 sure ones, W were of that class.",
+        "of 1000 things whose first class leaves {M1} to {M2} squares wrong and is {D1} to {D2} squares ahead, with "
+        "{P1} to {P2} open squares for 100 sure ones, {W} were of that class",
+    ),
+    "counted_other": (
+        "L, U, W",
+        "Of 1000 classes that leave L to U squares more wrong than a first class that is not the true one, W were it.",
+        "of 1000 classes that leave {L} to {U} squares more wrong than a first class that is not the true one, {W} "
+        "were it",
+    ),
+    "counted_none": (
+        "L, U, W",
+        "Of 1000 things whose first class leaves L to U squares wrong and is not the true one, W were of no class.",
+        "of 1000 things whose first class leaves {L} to {U} squares wrong and is not the true one, {W} were of none",
+    ),
+}
+CONSTANTS = {  # by case: numbers that Python reads, percent
+    "cut": (
+        "cut_object",
+        "Percent: of things that were felt and cut out of the bounds (kb/world/objects.py), so many were objects.",
+    ),
+}
+PRIORS_LINE_WIDTH = 118
+
+
+def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> str:
+    """Return the file of priors. told : how it was made, a line each."""
+    lines = [
+        "% How often alternatives were true, counted: what confidences are made of (a part of interpretation.lp and",
+        "% shapes.lp). No number here is chosen: thousandths by Laplace's rule, (true + 1) / (counted + 2). After each",
+        "% row: true / counted.",
+        "",
+        "% It was made so, and is made anew by the same command:",
+        *(f"%     {line}" for line in told),
+        "",
+    ]
+    for predicate, rows in groupby(counted, lambda row: row.predicate):
+        facts = [row for row in rows if row.given[0] not in CONSTANTS]
+        lines += [*_documented(predicate), '%! because "It was counted by benchmarks.priors."', f"{predicate}("]
+        lines += [
+            f"    {_arguments(row)}{';' if row is not facts[-1] else ''}  % {row.true} / {row.of}" for row in facts
+        ]
+        lines += [").", ""]
+    for row in counted:
+        if row.predicate == "counted_object" and row.given[0] in CONSTANTS:
+            lines += _constant(*CONSTANTS[str(row.given[0])], row)
+    about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
+    lines += _constant("untried_movable", about, movable)
+    lines += ["", "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
+    for predicate, (arguments, _, words) in WORDS.items():
+        lines += _wrapped(f"{predicate}({arguments})", words)
+    return "\n".join(lines) + "\n"
+
+
+def _documented(predicate: str) -> list[str]:
+    """Return the block that documents a predicate."""
+    arguments, what, _ = WORDS[predicate]
+    return [
+        f"%*! {predicate}({arguments})",
+        *textwrap.wrap(f"{what} *%", PRIORS_LINE_WIDTH, initial_indent="    ", subsequent_indent="    "),
+    ]
+
+
+def _arguments(row: Counted) -> str:
+    given = [f"{one.least}, {one.most}" if isinstance(one, Bin) else one for one in row.given]
+    return ", ".join([*given, str(row.thousandths)])
+
+
+def _constant(name: str, about: str, row: Counted) -> list[str]:
+    return [f"% {about} {row.true} / {row.of}", f"#const {name} = {min(99, max(1, round(row.thousandths / 10)))}."]
+
+
+def _wrapped(head: str, words: str) -> list[str]:
+    """Return how a predicate reads as an annotation, in lines with a string each."""
+    parts = textwrap.wrap(words, PRIORS_LINE_WIDTH - len(head) - len('%! says  " "'))
+    lines = [f'%! says {head} "{parts[0]}', *(f'%!   "{part}' for part in parts[1:])]
+    return [*(f'{line} "' for line in lines[:-1]), f'{lines[-1]}" else', '%!   "no such count is known"']

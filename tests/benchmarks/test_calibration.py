@@ -1,0 +1,186 @@
+"""Confidences compared with the truth, and priors counted: what the programs say of moments that are known."""
+
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from shapely import Polygon, box
+from shapely.affinity import rotate, translate
+
+from benchmarks.calibration import __main__ as calibration
+from benchmarks.calibration.dealt import DealtWorld, dealt, made
+from benchmarks.calibration.figures import NO_CLASS, RECTANGLE, class_of
+from benchmarks.calibration.picture import picture
+from benchmarks.calibration.statements import HeldStatement, Moment, statements
+from benchmarks.calibration.table import Held, as_json, reliabilities, table
+from benchmarks.calibration.truth import TableTruth
+from benchmarks.claims.asked import Asked, all_kinds
+from benchmarks.priors import __main__ as priors
+from benchmarks.priors.bins import ANY, EXTENT, MASS, WHOLE, Bin, bin_of, bins
+from benchmarks.priors.count import Counted, counted_classes, counted_kinds
+from benchmarks.priors.measures import FitSeen, RegionSeen
+from benchmarks.worlds.furniture import OUTLINE_SHAPES, outline
+
+
+@pytest.mark.parametrize("shape", OUTLINE_SHAPES)
+@pytest.mark.parametrize("degrees", [0, 90, 33])
+def test_the_class_of_a_polygon_is_found_at_any_angle(shape: str, degrees: int) -> None:
+    for seed in range(5):
+        polygon = outline(np.random.default_rng(seed), shape, degrees % 90 > 0)
+        turned = translate(rotate(polygon, degrees, origin=(0, 0)), 0.3, 7)
+        assert class_of(turned) == shape
+        assert class_of(Polygon(list(turned.exterior.coords)[::-1])) == shape
+
+
+def test_what_is_of_no_class_and_what_is_between_two_is_said() -> None:
+    cross = box(2, 0, 4, 6).union(box(0, 2, 6, 4))
+    assert class_of(cross) == NO_CLASS
+    assert class_of(box(0, 0, 10, 9)) == RECTANGLE
+    assert class_of(box(0, 0, 9, 9).difference(box(3, 3, 6, 6))) == NO_CLASS
+
+
+THING = SimpleNamespace(name="t1", colour="g", shape="square", polygon=box(3, 3, 6, 6), fixed=False)
+STONE = SimpleNamespace(name="p1", colour="h", shape="brick", polygon=box(8, 3, 10, 8), fixed=True)
+
+
+def moment(*facts: str, **nodes: tuple[int, int, int, int]) -> Moment:
+    """Return a moment on a table of 20 x 16 squares. nodes : west, south, east, north of each, in squares."""
+    floor = box(2, 2, 18, 14)
+    plan = SimpleNamespace(width=20, height=16, floor=floor, verge=box(0, 0, 20, 16).difference(floor))
+    world = SimpleNamespace(plan=plan, things=(THING, STONE), heading=0)
+    door = (box(18, 6, 20, 10), 4.0)
+    truth = TableTruth(DealtWorld(Asked("plugged", 0), world, (door,)), {}, (12.5, 8.5))
+    squares = {
+        name: frozenset((x, y) for x in range(west, east) for y in range(south, north))
+        for name, (west, south, east, north) in nodes.items()
+    }
+    return Moment(facts, {name: truth.of(there) for name, there in squares.items()}, squares, truth)
+
+
+def verdicts(found: Moment) -> dict[str, bool]:
+    return {statement.fact: statement.true for statement in statements(found)}
+
+
+def test_a_node_is_what_covers_most_of_its_squares() -> None:
+    found = moment(o1=(3, 3, 6, 5), o2=(0, 0, 3, 3), o3=(12, 12, 13, 13), o4=(3, 3, 10, 8), o5=(8, 3, 11, 8))
+    assert [found.nodes[f"o{n}"].kind for n in range(1, 6)] == ["object", "verge", "floor", "object", "object"]
+    assert [found.nodes[f"o{n}"].shape for n in range(1, 6)] == ["square", None, None, NO_CLASS, "brick"]
+
+
+def test_statements_are_compared_with_what_is_so() -> None:
+    facts = (
+        *("kind(o1,object,90)", "kind(o1,verge,10)", "kind(org,utak,100)", "kind(o2,verge,60)"),
+        *("shape(o1,square,70)", "shape(o1,disc,5)", "shape(o1,rectangle,80)", "shape(o1,polygon,95)"),
+        *("shape(o2,square,30)", "colour(o1,r,99)", "movable(o1,95)", "movable(o5,95)", "movable(o2,1)"),
+        *("adjacent(org,o1)", "adjacent(o1,o5,40)", "unheard_of(o1)"),
+    )
+    assert verdicts(moment(*facts, o1=(3, 3, 6, 6), o2=(0, 0, 3, 3), o5=(8, 3, 10, 8))) == {
+        "kind(o1,object,90)": True,
+        "kind(o1,verge,10)": False,
+        "kind(o2,verge,60)": True,
+        "shape(o1,square,70)": True,
+        "shape(o1,disc,5)": False,
+        "shape(o1,rectangle,80)": True,
+        "shape(o1,polygon,95)": True,
+        "colour(o1,r,99)": False,
+        "movable(o1,95)": True,
+        "movable(o5,95)": False,
+        "movable(o2,1)": False,
+        "adjacent(org,o1)": False,
+        "adjacent(o1,o5,40)": False,
+    }
+
+
+def test_doors_and_corners_are_found_where_they_are() -> None:
+    here = "offset(org,0,0)"
+    facts = (
+        *(here, "threshold(d1,550,-250,550,150)", "door(d1)", "width(d1,400)", "width(d1,450,500,80)"),
+        *("threshold(d2,-850,-250,-850,150)", "door(d2,40)", "width(d2,400)"),
+        *("corner(northeast,550,550,70)", "corner(southwest,0,0,30)", "corner(northeast,550,550)"),
+    )
+    assert verdicts(moment(*facts)) == {
+        "door(d1)": True,
+        "width(d1,400)": True,
+        "width(d1,450,500,80)": False,
+        "door(d2,40)": False,
+        "corner(northeast,550,550,70)": True,
+        "corner(southwest,0,0,30)": False,
+    }
+
+
+def statement(confidence: int, true: bool, alternatives: str = "") -> Held:
+    return Held(
+        "plugged:0", 3, HeldStatement("kind/3", f"kind(o1,object,{confidence})", confidence, true, alternatives)
+    )
+
+
+def test_the_error_is_the_mean_difference_of_bins_and_certain_mistakes_are_listed() -> None:
+    held = [statement(72, n < 5) for n in range(10)] + [statement(100, n > 0) for n in range(10)]
+    (found,) = reliabilities(held)
+    assert math.isclose(found.error, (abs(0.72 - 0.5) + abs(1 - 0.9)) / 2)
+    assert [(row.number, row.true) for row in found.rows.values()] == [(10, 0.5), (10, 0.9)]
+    assert [one.statement.confidence for one in found.wrong] == [100]
+    assert "wrong at 100: kind(o1,object,100) in plugged:0, step 3" in table([found])
+    assert json.loads(json.dumps(as_json([found])))[0]["statements"] == 20
+    assert picture([found]).count("<title>") == 2
+
+
+def test_alternatives_are_added_up() -> None:
+    (found,) = reliabilities([statement(60, True, "kind(o1)"), statement(40, False, "kind(o1)")])
+    assert found.sums == {100: 1} and "100 in 1 of 1" in table([found])
+
+
+def test_worlds_are_dealt_of_all_kinds_before_any_comes_again() -> None:
+    number = len({(asked.kind, asked.task) for asked in dealt(200, 7)})
+    first = list(dealt(number, 7))
+    assert {asked.kind for asked in first} == set(all_kinds())
+    assert len({(asked.kind, asked.task) for asked in first}) == number
+    assert list(dealt(5, 7)) == first[:5] != list(dealt(5, 8))
+    assert made(Asked("two_doors", 1)).doors
+
+
+@pytest.mark.parametrize("found", [*MASS.values(), *EXTENT.values(), bins(0, 3, 9)])
+def test_bins_have_no_gaps(found: tuple[Bin, ...]) -> None:
+    assert found[0].least == 0 and found[-1].most == ANY
+    assert all(one.most + 1 == other.least for one, other in pairwise(found))
+    assert all(bin_of(value, found).holds(value) for value in range(50))
+
+
+def test_rates_follow_laplace_and_are_never_certain() -> None:
+    assert [Counted("p", (), true, of).thousandths for true, of in ((0, 0), (0, 8), (8, 8), (10**6, 10**6))] == [
+        *(500, 100, 900, 999),
+    ]
+
+
+def test_regions_and_classes_are_counted_by_their_bins() -> None:
+    regions = [
+        RegionSeen("undecided", 3, 40, "o1", "object"),
+        RegionSeen("undecided", 30, 900, "", "verge"),
+        RegionSeen("undecided", 2, 3, "o2", "floor"),
+    ]
+    kinds = {(row.predicate, *row.given): (row.true, row.of) for row in counted_kinds(regions)}
+    assert kinds["counted_solid", "undecided", bin_of(3, MASS["undecided"])] == (0, 1)
+    assert kinds["counted_object", "undecided", bin_of(3, EXTENT["undecided"]), *WHOLE] == (1, 1)
+    assert kinds["counted_object", "undecided", bin_of(30, EXTENT["undecided"]), *WHOLE] == (0, 1)
+    fits = (("square", 0), ("brick", 0), ("disc", 3))
+    seen = [FitSeen("o1", fits, 0, 9, "object", shape) for shape in ("square", "brick", NO_CLASS, None)]
+    classes = {(row.predicate, *row.given): (row.true, row.of) for row in counted_classes(seen)}
+    assert classes["counted_first", Bin(0, 0), Bin(0, 0), Bin(0, 25)] == (1, 3)
+    assert classes["counted_other", Bin(0, 2)] == (1, 2)
+    assert classes["counted_none", Bin(0, 2)] == (1, 2)
+
+
+@pytest.mark.long
+def test_a_world_is_run_compared_and_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    few = ["--worlds", "1", "--seed", "500", "--max-steps", "4"]
+    calibration.main([*few, "--svg", str(tmp_path / "b.svg"), "--runs", str(tmp_path / "runs")])
+    assert "`kind/3`" in capsys.readouterr().out and (tmp_path / "b.svg").read_text().startswith("<svg")
+    assert json.loads((tmp_path / "runs").read_text())["world"] == "own_plain:3:500"
+    samples, once, again = (tmp_path / name for name in ("samples", "once.lp", "again.lp"))
+    assert priors.main([*few, "--samples", str(samples), "-o", str(once)]) == 0
+    assert priors.main([*few, "--samples", str(samples), "--recount", "-o", str(again)]) == 0
+    assert once.read_text() == again.read_text() and "counted_solid(" in once.read_text()
