@@ -174,12 +174,9 @@ class Chances:
         return found
 
     def _robot(self) -> _Body:
-        """Return where the robot may be: the squares of its box."""
-        (west, south, east, north), _ = self._robot_box()
-        columns, along = _overlaps(west, east)
-        rows, up = _overlaps(south, north)
-        chance = up[:, None] * along[None, :]
-        return _Body(rows.start, columns.start, chance, (chance > 1 - 1e-9) & self.is_sure)
+        """Return the square of the robot: what is beside it was felt from there, wherever the frame lies."""
+        row, column = self.model.view.locate(*self.model.place)
+        return _Body(row, column, np.ones((1, 1)), np.full((1, 1), self.is_sure))
 
     @cached_property
     def _verge_chances(self) -> Floats:
@@ -304,19 +301,15 @@ def _touching(name: str, about: _Body, other: str, body: _Body) -> Iterator[tupl
         yield name, other, percent(chance, bool((about.sure[parts[0]] & body.sure[parts[1]]).any()))
 
 
-def _overlaps(low: float, high: float, size: int | None = None) -> tuple[slice, Floats]:
-    """Return the squares of a row that a stretch meets, and which share of the stretch each takes up."""
+def _overlaps(low: float, high: float, size: int) -> tuple[slice, Floats]:
+    """Return the squares of a row of some size that a stretch meets, and which share of the stretch each takes up."""
     first, last = math.floor(low), max(math.ceil(high), math.floor(low) + 1)
     starts = np.arange(first, last)
     length = high - low
-    shares = (
-        (np.minimum(starts + 1, high) - np.maximum(starts, low)) / length if length > 1e-9 else np.ones(len(starts))
-    )
-    if size is None:
-        return slice(first, last), shares
-    inside = (starts >= 0) & (starts < size)
+    inner = np.minimum(starts + 1, high) - np.maximum(starts, low)
+    shares: Floats = inner / length if length > 1e-9 else np.ones(len(starts))
     begin = min(max(first, 0), size)
-    return slice(begin, max(begin, min(last, size))), shares[inside]
+    return slice(begin, max(begin, min(last, size))), shares[(starts >= 0) & (starts < size)]
 
 
 def _ends_of_mean(body: _Body, axis: int) -> tuple[float, float]:
@@ -329,7 +322,7 @@ def _ends_of_mean(body: _Body, axis: int) -> tuple[float, float]:
     for way in (1, -1):
         counts = count + np.cumsum(may[::way])
         totals = total + np.cumsum((may * places)[::way])
-        means = totals[counts > 0] / counts[counts > 0]
+        means = totals[counts > 0] / counts[counts > 0] if counts[-1] else places
         if count:
             means = np.append(means, total / count)
         ends.append(float(means.min() if way == 1 else means.max()))

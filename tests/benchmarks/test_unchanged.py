@@ -1,6 +1,7 @@
 """Episodes that are compared before and after a change are written with the noises that are asked for."""
 
 import argparse
+import json
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,17 @@ def test_each_scenario_is_run_with_each_noise(tmp_path: Path) -> None:
     assert [noise for _, noise, _ in other] == [0.05] * len(other)
     files = [file for _, _, file in [*usual, *other]]
     assert len(set(files)) == len(files)
+
+
+def test_commands_can_be_compared_alone(tmp_path: Path) -> None:
+    """What is believed is left out with --commands, and nothing else."""
+    for folder, fact, command in (("a", "door(d1).", 1), ("b", "door(d1,99).", 1), ("c", "door(d1).", 2)):
+        (tmp_path / folder).mkdir()
+        step = {"step": 0, "action": {"do": "turn", "degrees": command}, "belief": {"facts": [fact]}, "why": folder}
+        (tmp_path / folder / "one.jsonl").write_text(json.dumps(step) + "\n")
+    a, b, c = (str(tmp_path / folder) for folder in "abc")
+    assert main(["compare", a, b]) == 1 and main(["compare", a, b, "--commands"]) == 0
+    assert main(["compare", a, c, "--commands"]) == 1
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=5))
