@@ -127,3 +127,9 @@ def test_a_claim_that_what_is_seen_contradicts_is_reported() -> None:
 def test_claims_that_say_nothing_are_refused(start: str, told: str) -> None:
     with pytest.raises(BadInputError, match=re.escape(told)):
         Scenario.from_text(world=world([], ROBOT_WEST), start=start, goal="at(utak, start).")
+
+
+def test_a_colour_may_have_the_name_of_a_parameter() -> None:
+    start = "object(x). object(g). colour(x, x). colour(g, g)."
+    scenario = Scenario.from_text(world=world([], ROBOT_WEST), start=start, goal="at(x, g).")
+    assert [str(goal) for goal in scenario.goals] == ["at(x,g)"]

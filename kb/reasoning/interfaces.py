@@ -83,8 +83,10 @@ STATED_FACTS: Forms = {
     name: declared.arguments[:-1] for (name, _), declared in BELIEF_PREDICATES.items() if declared.confident
 }
 FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
-QUESTIONS: Forms = dict.fromkeys(("kind", "shape", "room"), (THING_ARGUMENT,))  # whose answers exclude each other
-QUESTION_ARGUMENT = _compound_argument("question", "questions", QUESTIONS)
+EXCLUSIVE_QUESTIONS: Forms = dict.fromkeys(
+    ("kind", "shape", "room"), (THING_ARGUMENT,)
+)  # whose answers exclude each other
+QUESTION_ARGUMENT = _compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
 # The activities of the agenda.
@@ -101,7 +103,7 @@ COMPOUND_FORMS: Mapping[str, Forms] = {
     "activity": ACTIVITIES,
     "fact": STATED_FACTS,
     "act": ACTS,
-    "question": QUESTIONS,
+    "question": EXCLUSIVE_QUESTIONS,
 }
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 from utak.kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
@@ -288,7 +289,8 @@ def _wrong_arguments(
     for term, kinds in zip(fact.args, taken, strict=True):
         if kinds is not None and isinstance(term, Symbol) and not term.args:
             yield from _wrong_kind(source, fact, term, kinds, parameters)
-    twice = [term for term, after in zip(fact.args, fact.args[1:], strict=False) if term == after]
+    named = [term for term, kinds in zip(fact.args, taken, strict=True) if kinds is not None]  # x may be a colour, too
+    twice = [term for term, after in pairwise(named) if term == after]
     yield from (source.problem(fact.span, f"{fact.name} relates {term} to itself") for term in twice)
 
 

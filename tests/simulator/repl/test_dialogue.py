@@ -114,10 +114,11 @@ def test_queries_facts_and_the_names_of_the_robot(dialogue: Dialogue, capsys: py
 
 def test_possible_worlds(dialogue: Dialogue, capsys: pytest.CaptureFixture[str]) -> None:
     likeliest, second, *table = talk(dialogue, capsys, "worlds 2")[0].splitlines()
-    assert likeliest.split("  ")[1:] == ["kind(o1,verge)"]
-    assert second.split("  ")[1:] == ["but not kind(o1,verge), kind(o1,object)"]
-    assert sum(float(line.split(" %")[0]) for line in (likeliest, second)) == pytest.approx(100.0)
-    assert [row.split()[-1] for row in table[1:]] == ["feel(o1)", "feel(o1)"]
+    assert "kind(o1,verge)" in likeliest and "kind(o1,object)" not in likeliest
+    assert second.split("  ")[1].startswith("but ")
+    assert 100.0 > float(likeliest.split(" %")[0]) >= float(second.split(" %")[0]) > 0.0
+    acts = {row.split()[0]: row.split()[-1] for row in table[1:]}
+    assert acts["kind(o1,verge)"] == acts["kind(o1,object)"] == "feel(o1)"
     for wrong in ("0", "x", "-1", "1001", "2 3", "9" * 30):
         assert "this is no number from 1 to 1000" in talk(dialogue, capsys, f"worlds {wrong}")[1]
     out = talk(dialogue, capsys, "?- chance(F, C), 0 < C, C < 100.")[0]
