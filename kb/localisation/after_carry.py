@@ -33,6 +33,7 @@ from utak.kb.localisation.score import (
     propose_earlier_motions,
     propose_frame,
     residual_at,
+    with_others,
 )
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.patch import patch_of_polygon
@@ -43,6 +44,13 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn."""
+    judged = _explain_carry(state, surprise, held, motion)
+    # Where others took what is in hand, nothing moved.
+    return judged._replace(explanation=with_others(state, judged.explanation, surprise.ranges, [state.place]))
+
+
+def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
+    """Return the explanation chosen for the observation after a push or a turn, if nothing else moved things."""
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
     budget = SearchBudget(state.search_count)

@@ -4,7 +4,7 @@ Expensive proposals are made only when cheap ones leave something unexplained. k
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
@@ -18,11 +18,14 @@ from utak.kb.localisation.propose.earlier_motion import (
     reestimate_with_origin,
 )
 from utak.kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.propose.lifted import propose_lifted
+from utak.kb.localisation.propose.others import propose_changes
+from utak.kb.localisation.state import MAX_RESIDUAL, TrackerState
 from utak.kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
 MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise
+MIN_UNEXPLAINED = 2  # fields of noise that cost more than an act of others: derived from kb/asp/accommodation.lp
 Found = TypeVar("Found")
 
 
@@ -173,3 +176,24 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
     known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]
     known += ["proven"] * (state.in_hand is not None and state.held_objects[state.in_hand].proven)
     return cheapest(explanations, [*known, *facts])
+
+
+def with_others(
+    state: TrackerState, chosen: Explanation, ranges: FieldRanges, places: Sequence[Position]
+) -> Explanation:
+    """Return the choice between an explanation and what others may have done, if it explains badly."""
+    # places : where the look may have been made if others only moved things, the predicted one first
+    if not _explains_badly(state, chosen):
+        return chosen
+    changes = propose_changes(state, ranges, places)
+    best = choose(state, [chosen, *changes]) if changes else chosen
+    if best.unexplained < MIN_UNEXPLAINED and (best.change is None or best.distance <= 1):
+        return best
+    lost = Explanation("lost", places[0], state.frame, MAX_RESIDUAL, 0.0)
+    return choose(state, [best, *propose_lifted(state, ranges), lost])
+
+
+def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:
+    """Return whether an explanation costs more than what others may have done, by kb/asp/accommodation.lp."""
+    far = explanation.how == "slipped" and not state.slipped and explanation.distance > 1
+    return explanation.unexplained >= MIN_UNEXPLAINED or far

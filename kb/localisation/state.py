@@ -14,10 +14,17 @@ from utak.kb.localisation.hypotheses.frames import (
     FieldRanges,
     FrameHypothesis,
     Observation,
+    OriginBox,
     Position,
     origin_leeway,
 )
-from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, squares_passed
+from utak.kb.localisation.hypotheses.recognition import Look, places_within
+from utak.kb.localisation.hypotheses.walk_outcomes import (
+    LINE_DISTANCE,
+    MotionHypothesis,
+    observation_places,
+    squares_passed,
+)
 from utak.kb.localisation.hypotheses.what_if import Surprise
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OPEN, OccupancyMap
@@ -60,6 +67,13 @@ class TrackerState:
     # The newest completions of the map in this frame (sampled maps that agree with all counts); None when none were
     # drawn
     completions: Completions | None = None
+    # The squares of things that were seen and never held, by name, map frame: whole things can be moved by others
+    things: Mapping[str, frozenset[Square]] = field(default_factory=dict)
+    place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)  # how far Utak may be from `place` since it was lifted: W, S, E, N
+    lifted_at: frozenset[int] = frozenset()  # the numbers of the observations before which it was put elsewhere
+    # What was believed before it was put somewhere that was not recognised yet, and what it saw since; map frame of that
+    former: "TrackerState | None" = None
+    looks: tuple[Look, ...] = ()
 
     def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
         """Return an observation that contradicts this state, with what of the state it is judged by."""
@@ -75,6 +89,10 @@ class TrackerState:
             self.hypotheses,
             self.completions,
         )
+
+    def places_near(self, place: Position) -> list[Position]:
+        """Return the places from which an observation may be made that ends a motion at `place`, one in each square."""
+        return places_within(place, self.place_error) if any(self.place_error) else list(observation_places(place))
 
     # -- pose and track --------------------------------------------------------------------------
 
@@ -99,8 +117,8 @@ class TrackerState:
     @property
     def passed(self) -> frozenset[Square]:
         """Return the squares through which the robot went on the present map: (column, row), map frame."""
-        track = self.track[len(self.been) :]
-        return frozenset(square for way in pairwise(track) for square in squares_passed(*way))
+        ways = enumerate(pairwise(self.track[len(self.been) :]), 1)
+        return frozenset(square for n, way in ways if n not in self.lifted_at for square in squares_passed(*way))
 
     @property
     def leeway(self) -> tuple[float, float, float, float]:

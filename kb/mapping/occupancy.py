@@ -196,6 +196,10 @@ class OccupancyMap:
         touched = doubtful[self._where] & (self._weight > 0)
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
 
+    def withdraw_patch(self, patch: tuple[int, int, Bools]) -> None:
+        """Forget what was settled of the squares of a patch; see `withdraw`."""
+        self.withdraw(np.flatnonzero(self.squares(*patch)).astype(np.int32))
+
     def stand(self, x: int, y: int, number: int) -> None:
         """Settle the square on which the robot woke as free, unless it was settled before: its own image hides it."""
         row, column = self.index(x, y)

@@ -1,0 +1,163 @@
+"""Proposals that others changed the table: a thing is no longer where it lay, something stands where floor was.
+
+Whole things leave, walls do not. What earlier impressions said of the squares that changed says nothing any more; the
+new impression, and those after it, show what is there now.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from utak.geometry.kernels.arrays import Bools
+from utak.geometry.raster.components import components
+from utak.kb.localisation.hypotheses.explanation import Explanation, TableChange
+from utak.kb.localisation.hypotheses.frames import FieldRanges, Observation, Position, observation_squares
+from utak.kb.localisation.hypotheses.remap import object_at
+from utak.kb.localisation.hypotheses.what_if import count_clashes
+from utak.kb.localisation.state import TrackerState
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
+from utak.kb.mapping.patch import patch_of_squares
+from utak.kb.objects.held_object import HeldObject, Square, subtract_held_objects
+from utak.kb.perception.frame import Frame, Samples
+
+SAME_THING_DISTANCE = 2  # squares between squares that changed which count as one thing: half of the largest field
+
+
+def propose_changes(state: TrackerState, ranges: FieldRanges, places: Iterable[Position]) -> list[Explanation]:
+    """Return explanations by which others changed the table, one for each place where the look may have been made."""
+    found = (_changed_at(state, ranges, place) for place in dict.fromkeys(places))
+    return [one for one in found if one is not None]
+
+
+def _changed_at(state: TrackerState, ranges: FieldRanges, place: Position) -> Explanation | None:
+    """Return the explanation that things were moved, and the look was made at `place`; None when nothing changed."""
+    lying = {name: held.possible.squares() for name, held in state.held_objects.items()}
+    things: dict[str, set[Square]] = {**{name: set(own) for name, own in state.things.items()}, **lying}
+    gone = _gone_things(state, ranges, place, things)
+    left = [held for name, held in state.held_objects.items() if name not in gone]
+    squares = frozenset(square for name in gone for square in things[name])
+    new = _new_squares(state, ranges, place, left, squares)
+    if not gone and not new:
+        return None
+    occupancy = state.occupancy.copy()
+    occupancy.withdraw_patch(patch_of_squares(squares | new))
+    residual = count_clashes(state.frame, occupancy, left, place, ranges)
+    parts = 0 if not new else _count_parts(new - squares) if new - squares else 0
+    change = TableChange(tuple(sorted(gone)), squares | new, parts)
+    acts = max(len(gone), parts)
+    return Explanation("changed", place, state.frame, residual, acts, change=change)
+
+
+def _gone_things(
+    state: TrackerState, ranges: FieldRanges, place: Position, things: Mapping[str, set[Square]]
+) -> list[str]:
+    """Return the names of the fewest things that are gone where the look shows too little, as far as things explain."""
+    x, y = int(np.floor(place[0])), int(np.floor(place[1]))
+    samples, gone = state.frame.samples(), list[str]()
+    under = _squares_under(samples, x, y)
+    while True:
+        lacking = _balance(state, ranges, place, _without(state, gone), _squares_of(things, gone))[0]
+        fields = [under[field] for field in np.flatnonzero(lacking)]
+        shares = {name: sum(not own.isdisjoint(field) for field in fields) for name, own in things.items()}
+        left = [(-share, name) for name, share in shares.items() if share and name not in gone]
+        if not left:
+            return gone
+        gone.append(min(left)[1])
+
+
+def _new_squares(
+    state: TrackerState, ranges: FieldRanges, place: Position, left: Sequence[HeldObject], gone: frozenset[Square]
+) -> frozenset[Square]:
+    """Return the squares of floor on which something may stand now, since the look shows too much."""
+    x, y = int(np.floor(place[0])), int(np.floor(place[1]))
+    samples = state.frame.samples()
+    surplus = _balance(state, ranges, place, left, gone)[1]
+    under = _squares_under(samples, x, y)
+    new = {square for field in np.flatnonzero(surplus) for square in under[field]}
+    # Beside them, fields that would show the same with or without a part of the thing leave it open, too.
+    about = {(x + dx, y + dy) for x, y in new for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))} - new
+    for field in np.flatnonzero(ranges[:, 1] > 0):
+        if not about.isdisjoint(under[field]):
+            new |= under[field]
+    state_at, index = state.occupancy.state, state.occupancy.index
+    return frozenset(square for square in new if state_at[index(*square)] == FREE)
+
+
+def _balance(
+    state: TrackerState, ranges: FieldRanges, place: Position, held: Iterable[HeldObject], opened: Iterable[Square]
+) -> tuple[Bools, Bools]:
+    """Return which fields show less than the map and held objects allow, and which show more; opened squares may be."""
+    x, y = int(np.floor(place[0])), int(np.floor(place[1]))
+    occupancy = state.occupancy
+    occupancy.make_room(x, y)
+    samples, counts = subtract_held_objects(state.frame.samples(), ranges, x, y, held)
+    states = occupancy.state.copy()
+    for square in opened:
+        states[occupancy.index(*square)] = OPEN
+    at = states[samples.rows + (y - occupancy.south), samples.columns + (x - occupancy.west)]
+    occupied = (samples.weight * (at == OCCUPIED)).sum(1)
+    possible = occupied + (samples.weight * (at == OPEN)).sum(1)
+    return np.asarray(occupied > counts[:, 1]), np.asarray(possible < counts[:, 0] - samples.slack)
+
+
+def _without(state: TrackerState, gone: Sequence[str]) -> list[HeldObject]:
+    return [held for name, held in state.held_objects.items() if name not in gone]
+
+
+def _squares_of(things: Mapping[str, set[Square]], names: Iterable[str]) -> set[Square]:
+    return {square for name in names for square in things[name]}
+
+
+def _squares_under(samples: Samples, x: int, y: int) -> list[set[Square]]:
+    """Return the squares under each field, map frame."""
+    return [
+        {
+            (x + column, y + row)
+            for column, row, weight in zip(columns.tolist(), rows.tolist(), weights.tolist(), strict=True)
+            if weight
+        }
+        for columns, rows, weights in zip(samples.columns, samples.rows, samples.weight, strict=True)
+    ]
+
+
+def _count_parts(squares: frozenset[Square]) -> int:
+    """Return of how many things some squares may be: those within `SAME_THING_DISTANCE` are of one."""
+    mask = np.pad(patch_of_squares(squares).mask, SAME_THING_DISTANCE)
+    near = mask.copy()
+    for _ in range(SAME_THING_DISTANCE // 2):
+        wide = np.pad(near, 1)
+        near = np.logical_or.reduce([wide[1 + dy :, 1 + dx :][: near.shape[0], : near.shape[1]] for dy in (-1, 0, 1) for dx in (-1, 0, 1)])
+    return int(components(near).labels.max())
+
+
+def forgetting(
+    frame: Frame, observations: Sequence[Observation], change: TableChange, gone: Sequence[HeldObject]
+) -> tuple[Observation, ...]:
+    """Return earlier observations without what they say of the squares that changed, and of the things that left."""
+    samples, named = frame.samples(), {held.name: held for held in gone}
+    told = []
+    for observation, (x, y) in zip(observations, observation_squares(frame, observations).tolist(), strict=True):
+        squares = set(change.squares)
+        for pose in observation.moved:
+            if pose.name in named:
+                squares |= object_at(named[pose.name], pose, frame).possible.squares()
+        moved = tuple(pose for pose in observation.moved if pose.name not in named)
+        told.append(observation._replace(ranges=silenced(observation.ranges, samples, x, y, squares), moved=moved))
+    return tuple(told)
+
+
+def silenced(ranges: FieldRanges, samples: Samples, x: int, y: int, squares: set[Square]) -> FieldRanges:
+    """Return the counts of an observation from the square (x, y); fields over some squares say nothing."""
+    rows = np.array([[row, column] for column, row in squares])
+    south, west = rows.min(0)
+    mask = np.zeros(tuple(rows.max(0) - [south, west] + 1), np.bool_)
+    mask[rows[:, 0] - south, rows[:, 1] - west] = True
+    row, column = samples.rows + (y - south), samples.columns + (x - west)
+    inside = (row >= 0) & (row < mask.shape[0]) & (column >= 0) & (column < mask.shape[1]) & (samples.weight > 0)
+    over = (inside & mask[np.where(inside, row, 0), np.where(inside, column, 0)]).any(1)
+    if not over.any():
+        return ranges
+    left = ranges.copy()
+    left[over, 0] = 0
+    left[over, 1] = samples.weight[over].sum(1) + samples.slack[over]
+    return left
