@@ -18,9 +18,9 @@ from utak.kb.localisation.propose.earlier_motion import (
     reestimate_with_origin,
 )
 from utak.kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
-from utak.kb.localisation.propose.lifted import propose_lifted
+from utak.kb.localisation.propose.lifted import weighed_with_lifting
 from utak.kb.localisation.propose.others import propose_changes
-from utak.kb.localisation.state import MAX_RESIDUAL, TrackerState
+from utak.kb.localisation.state import TrackerState
 from utak.kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
@@ -186,11 +186,7 @@ def with_others(
     if not _explains_badly(state, chosen):
         return chosen
     changes = propose_changes(state, ranges, places)
-    best = choose(state, [chosen, *changes]) if changes else chosen
-    if best.unexplained < MIN_UNEXPLAINED and (best.change is None or best.distance <= 1):
-        return best
-    lost = Explanation("lost", places[0], state.frame, MAX_RESIDUAL, 0.0)
-    return choose(state, [best, *propose_lifted(state, ranges), lost])
+    return choose(state, weighed_with_lifting(state, ranges, [chosen, *changes]))
 
 
 def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:

@@ -9,9 +9,8 @@ from collections.abc import Container, Iterable, Mapping
 from utak.geometry.kernels.arrays import Square
 from utak.kb.mapping.patch import Patch
 
-# Between the squares of a thing as it was seen and as it is seen again, first from afar: a 4 x 4 field tells counts to
-# within a factor of two; derived
-MAX_SIZE_RATIO = 2.0
+# Between the squares of a thing and those that it may cover where it is seen again, often from afar and off the grid
+MAX_SIZE_RATIO = 3.0
 
 
 class ObjectNames:

@@ -162,6 +162,7 @@ def _hindrance(fact: Fact, world: World, appear: dict[str, Fact]) -> str:
         return ""
     if _step(fact) >= FIRST_TURNED_STEP:  # the robot may have turned it: the part that it covers however it lies
         middle = polygon.centroid
-        inner = middle.distance(polygon.exterior) if polygon.contains(middle) else 0.0
-        polygon = middle.buffer(inner)
+        if not polygon.contains(middle):
+            return ""
+        polygon = middle.buffer(middle.distance(polygon.exterior))
     return thing_misplaced(world, name, Disturbance(1, name, place, "").outline(polygon, world.width), standing(world))

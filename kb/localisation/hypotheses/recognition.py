@@ -6,13 +6,14 @@ It loses by each field that the map forbids. The place is known when no other pl
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from utak.geometry.counts.retina import FIELDS
+from utak.geometry.kernels.arrays import Longs, Square
 from utak.kb.localisation.hypotheses.frames import FieldRanges, OriginBox, Position
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
@@ -22,6 +23,7 @@ MIN_LEAD = 6.0  # nats by which the best place must lead: the same within which 
 MISFIT_LOSS = 10.0  # nats that a field of noise costs, as in kb/asp/accommodation.lp
 SUBSQUARES = 8  # places within a square that are told apart, along each axis: squares of 1/8; bounds the time
 MIN_VARIANCE = 0.01  # squares^2 of a field's count where all its squares are settled: it is the count, nearly
+MIN_LIKELIHOOD = 1e-9  # below which a field counts as forbidden, so that its logarithm is finite
 CHUNK = 256  # places that are judged at once: bounds memory
 
 Scores = NDArray[np.float32]  # (rows, columns) of a map: the nats by which a look favours each square
@@ -42,39 +44,71 @@ class Recognised(NamedTuple):
     chance: float  # one of so many places: the probability of it before any look
 
 
-def look_scores(
-    occupancy: OccupancyMap,
-    things: Sequence[tuple[Patch, Patch]],
-    samples: Samples,
-    ranges: FieldRanges,
-    earlier: Sequence[FieldRanges],
-) -> Scores:
-    """Return by how much an impression favours each square of a map; -inf where the robot cannot have been.
+class KnownMap:
+    """A map with what lies on it, as a look is compared with it."""
 
-    things : the squares that held things surely cover, and those that they may cover.
-    """
-    states = occupancy.state.copy()
-    for sure, possible in things:
-        for patch, value in ((possible, OPEN), (sure, OCCUPIED)):
-            states[occupancy.squares(*patch)] = value
-    chances = np.where(states == OPEN, 1.0 / (1.0 + np.exp(-occupancy.logit)), states == OCCUPIED)
-    chances[~occupancy.seen & (states == OPEN)] = np.nan
-    padded = np.pad(chances.astype(np.float32), SIGHT_RANGE, constant_values=np.nan)
-    scores = np.full(states.shape, -np.inf, np.float32)
-    rows, columns = np.nonzero((states != OCCUPIED) & occupancy.seen)
-    under = samples.rows * padded.shape[1] + samples.columns
-    weight, told, flat = samples.weight.astype(np.float32), _told(ranges, earlier), padded.ravel()
-    low, high = (ranges[:, 0] - samples.slack).astype(np.float32), ranges[:, 1].astype(np.float32)
-    for begin in range(0, len(rows), CHUNK):
-        part = slice(begin, begin + CHUNK)
-        base = (rows[part] + SIGHT_RANGE) * padded.shape[1] + columns[part] + SIGHT_RANGE
-        at = np.where(weight > 0, flat[base[:, None, None] + under[None]], 0.0)
+    def __init__(
+        self,
+        occupancy: OccupancyMap,
+        things: Iterable[tuple[Patch, Patch]],
+        samples: Samples,
+        earlier: Sequence[FieldRanges],
+        changed: Iterable[Square] = (),
+    ) -> None:
+        """Prepare the comparison; nothing is changed.
+
+        things : the squares that held things surely cover, and those that they may cover. earlier : the impressions by
+        which the map was made. changed : squares of which the map tells nothing any more.
+        """
+        states = occupancy.state.copy()
+        for sure, possible in things:
+            for patch, value in ((possible, OPEN), (sure, OCCUPIED)):
+                states[occupancy.squares(*patch)] = value
+        chances = np.where(states == OPEN, 1.0 / (1.0 + np.exp(-occupancy.logit)), states == OCCUPIED)
+        chances[~occupancy.seen & (states == OPEN)] = np.nan
+        for square in changed:
+            chances[occupancy.index(*square)] = np.nan
+        self._places = (states != OCCUPIED) & occupancy.seen
+        self._index, self._samples, self._earlier = occupancy.index, samples, earlier
+        padded = np.pad(chances.astype(np.float32), SIGHT_RANGE, constant_values=np.nan)
+        self._chances, self._columns = padded.ravel(), padded.shape[1]
+
+    def scores(self, ranges: FieldRanges) -> Scores:
+        """Return by how much an impression favours each square; -inf where the robot cannot have been."""
+        scores = np.full(self._places.shape, -np.inf, np.float32)
+        rows, columns = np.nonzero(self._places)
+        for begin in range(0, len(rows), CHUNK):
+            part = slice(begin, begin + CHUNK)
+            scores[rows[part], columns[part]] = self._gains(ranges, rows[part], columns[part]).sum(1)
+        return scores
+
+    def score_at(self, ranges: FieldRanges, place: Position) -> float:
+        """Return by how much an impression favours a place, but for the fields that it forbids."""
+        row, column = self._index(math.floor(place[0]), math.floor(place[1]))
+        gains = self._gains(ranges, np.array([row]), np.array([column]))
+        return float(gains[gains > -MISFIT_LOSS].sum())
+
+    def _gains(self, ranges: FieldRanges, rows: Longs, columns: Longs) -> NDArray[np.float32]:
+        """Return what each field gains for each of some squares, (squares, 160); what was never seen tells nothing."""
+        samples = self._samples
+        under = samples.rows * self._columns + samples.columns
+        base = (rows + SIGHT_RANGE) * self._columns + columns + SIGHT_RANGE
+        weight = samples.weight.astype(np.float32)
+        at = np.where(weight > 0, self._chances[base[:, None, None] + under[None]], np.float32(0))
         mean = np.einsum("pfs,fs->pf", at, weight)
-        spread = np.sqrt(np.einsum("pfs,fs->pf", at * (1.0 - at), weight) + MIN_VARIANCE)
+        spread = np.sqrt(np.einsum("pfs,fs->pf", at * (1 - at), weight) + np.float32(MIN_VARIANCE))
+        low, high = ranges[:, 0] - samples.slack, ranges[:, 1]
         likely = ndtr((high + 0.5 - mean) / spread) - ndtr((low - 0.5 - mean) / spread)
-        gains = np.maximum(np.log(np.maximum(likely, 1e-9)) + told, -MISFIT_LOSS)
-        scores[rows[part], columns[part]] = np.nansum(gains, axis=1)  # what was never seen tells nothing
-    return scores
+        told = _told(ranges, self._earlier)
+        return np.nan_to_num(np.maximum(np.log(np.maximum(likely, MIN_LIKELIHOOD)) + told, -MISFIT_LOSS))
+
+
+def mean_likelihood(scores: Scores) -> float:
+    """Return how much a look favours that the robot is anywhere on a map, or where nothing is known, in nats."""
+    known = scores[np.isfinite(scores)]
+    best = max(float(known.max(initial=0.0)), 0.0)
+    anywhere = float(np.exp(known - best).sum()) / max(len(known), 1)
+    return best + math.log((anywhere + math.exp(-best)) / 2)
 
 
 def ndtr(x: NDArray[np.float32]) -> NDArray[np.float32]:

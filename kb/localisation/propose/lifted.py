@@ -1,24 +1,52 @@
-"""Proposals that others put the robot elsewhere on the known map, heading as before: where it recognises what it sees."""
+"""Proposals that others put the robot elsewhere, heading as before: where it recognises what it sees, or it is lost.
+
+That it was lifted is as likely as what it sees is on the known map in the mean, or where nothing is known. Where one
+place alone fits it is known where; otherwise a new map is begun, and the old one kept to be recognised later.
+"""
+
+from collections.abc import Iterable, Sequence
 
 from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.frames import FieldRanges
-from utak.kb.localisation.hypotheses.recognition import Look, look_scores, recognise
+from utak.kb.localisation.hypotheses.frames import FieldRanges, Position
+from utak.kb.localisation.hypotheses.recognition import KnownMap, Look, mean_likelihood, recognise
 from utak.kb.localisation.hypotheses.what_if import count_clashes
 from utak.kb.localisation.state import TrackerState
+from utak.kb.objects.held_object import Square
 
 
-def propose_lifted(state: TrackerState, ranges: FieldRanges) -> list[Explanation]:
-    """Return the explanation that the robot stands where the map shows what it sees, in a list; [] for no such place."""
-    found = recognise(state.occupancy, [look_at(state, ranges)])
-    if found is None:
-        return []
-    residual = count_clashes(state.frame, state.occupancy, state.held_objects.values(), found.landing, ranges)
-    lifted = Explanation("lifted", found.landing, state.frame, residual, 1.0, chance=found.chance)
-    return [lifted._replace(place_error=found.error)]
+def weighed_with_lifting(
+    state: TrackerState, ranges: FieldRanges, explanations: Sequence[Explanation]
+) -> list[Explanation]:
+    """Return explanations, and that the robot was lifted, each with its price by how likely it makes what is seen."""
+    look = look_at(state, ranges)
+    likely = [_likelihood(state, ranges, one) for one in explanations]
+    lifting = mean_likelihood(look.scores)
+    best = max(lifting, *likely)
+    found = recognise(state.occupancy, [look])
+    lifted = Explanation("lost", state.place, state.frame, 0, 1.0)
+    if found is not None:
+        held_objects = state.held_objects.values()
+        residual = count_clashes(state.frame, state.occupancy, held_objects, found.landing, ranges)
+        lifted = Explanation("lifted", found.landing, state.frame, residual, 1.0, place_error=found.error)
+    weighed = [one._replace(prior_cost=one.prior_cost + best - x) for one, x in zip(explanations, likely, strict=True)]
+    return [*weighed, lifted._replace(prior_cost=best - lifting)]
 
 
-def look_at(state: TrackerState, ranges: FieldRanges, away: tuple[float, float] = (0.0, 0.0)) -> Look:
-    """Return how an impression judges the places of a map. away : from where the robot was put down, in squares."""
+def _likelihood(state: TrackerState, ranges: FieldRanges, explanation: Explanation) -> float:
+    """Return how much the look favours where an explanation says it was made, in nats, beside its fields of noise."""
+    if explanation.frame != state.frame:
+        return known_map(state).score_at(ranges, state.place)
+    changed = () if explanation.change is None else explanation.change.squares
+    return known_map(state, changed).score_at(ranges, explanation.place)
+
+
+def known_map(state: TrackerState, changed: Iterable[Square] = ()) -> KnownMap:
+    """Return the believed map with what lies on it. changed : squares of which it tells nothing any more."""
     things = [(held.sure, held.possible) for held in state.held_objects.values()]
     earlier = [observation.ranges for observation in state.observations]
-    return Look(look_scores(state.occupancy, things, state.frame.samples(), ranges, earlier), away)
+    return KnownMap(state.occupancy, things, state.frame.samples(), earlier, changed)
+
+
+def look_at(state: TrackerState, ranges: FieldRanges, away: Position = (0.0, 0.0)) -> Look:
+    """Return how an impression judges the places of a map. away : from where the robot was put down, in squares."""
+    return Look(known_map(state).scores(ranges), away)
