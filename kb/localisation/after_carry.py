@@ -45,8 +45,10 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn."""
     judged = _explain_carry(state, surprise, held, motion)
-    # Where others took what is in hand, nothing moved.
-    return judged._replace(explanation=with_others(state, judged.explanation, surprise.ranges, [state.place]))
+    end = predicted_outcome(state.place, held.polygon, motion)
+    carried = held.moved(end.polygon, held.slack, end.degrees, commanded=True)
+    after = replace(state, held_objects={**state.held_objects, held.name: carried})
+    return judged._replace(explanation=with_others(state, judged.explanation, surprise.ranges, [state.place], after, end))
 
 
 def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
 from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
 from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
@@ -179,14 +180,24 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
 
 
 def with_others(
-    state: TrackerState, chosen: Explanation, ranges: FieldRanges, places: Sequence[Position]
+    state: TrackerState,
+    chosen: Explanation,
+    ranges: FieldRanges,
+    places: Sequence[Position],
+    carried: TrackerState | None = None,
+    outcome: CarryOutcome | None = None,
 ) -> Explanation:
     """Return the choice between an explanation and what others may have done, if it explains badly."""
-    # places : where the look may have been made if others only moved things, the predicted one first
+    # places : where the look may have been made if others moved things, the likeliest first. carried : the state with
+    # what is in hand where a motion took it, with the outcome of that motion; others may have moved something else.
     if not _explains_badly(state, chosen):
         return chosen
-    changes = propose_changes(state, ranges, places)
-    return choose(state, weighed_with_lifting(state, ranges, [chosen, *changes]))
+    explanations = [(state, one) for one in (chosen, *propose_changes(state, ranges, places))]
+    if carried is not None and outcome is not None:
+        beside = propose_changes(carried, ranges, [outcome.place])
+        others = [one for one in beside if one.change is not None and state.in_hand not in one.change.gone]
+        explanations += [(carried, one._replace(outcome=outcome)) for one in others]
+    return choose(state, weighed_with_lifting(state, ranges, explanations))
 
 
 def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:

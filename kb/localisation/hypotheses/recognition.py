@@ -19,8 +19,13 @@ from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
-MIN_LEAD = 6.0  # nats by which the best place must lead: the same within which explanations are kept side by side
+# Nats by which the best place must lead: twice those within which explanations are kept side by side, since open squares
+# are weighed as if they were independent
+MIN_LEAD = 12.0
 MISFIT_LOSS = 10.0  # nats that a field of noise costs, as in kb/asp/accommodation.lp
+# Nats that it costs on top of that where a place is recognised: the map is not to be wrong, and others not to have moved
+# things as well, where the robot was lifted
+FORBIDDEN_LOSS = 20.0
 SUBSQUARES = 8  # places within a square that are told apart, along each axis: squares of 1/8; bounds the time
 MIN_VARIANCE = 0.01  # squares^2 of a field's count where all its squares are settled: it is the count, nearly
 MIN_LIKELIHOOD = 1e-9  # below which a field counts as forbidden, so that its logarithm is finite
@@ -79,7 +84,8 @@ class KnownMap:
         rows, columns = np.nonzero(self._places)
         for begin in range(0, len(rows), CHUNK):
             part = slice(begin, begin + CHUNK)
-            scores[rows[part], columns[part]] = self._gains(ranges, rows[part], columns[part]).sum(1)
+            gains = self._gains(ranges, rows[part], columns[part])
+            scores[rows[part], columns[part]] = gains.sum(1) - FORBIDDEN_LOSS * (gains <= -MISFIT_LOSS).sum(1)
         return scores
 
     def score_at(self, ranges: FieldRanges, place: Position) -> float:

@@ -15,11 +15,12 @@ from utak.kb.objects.held_object import Square
 
 
 def weighed_with_lifting(
-    state: TrackerState, ranges: FieldRanges, explanations: Sequence[Explanation]
+    state: TrackerState, ranges: FieldRanges, explanations: Sequence[tuple[TrackerState, Explanation]]
 ) -> list[Explanation]:
     """Return explanations, and that the robot was lifted, each with its price by how likely it makes what is seen."""
+    # explanations : each with the state in which what is in hand lies where it says
     look = look_at(state, ranges)
-    likely = [_likelihood(state, ranges, one) for one in explanations]
+    likely = [_likelihood(after, ranges, one) for after, one in explanations]
     lifting = mean_likelihood(look.scores)
     best = max(lifting, *likely)
     found = recognise(state.occupancy, [look])
@@ -28,8 +29,11 @@ def weighed_with_lifting(
         held_objects = state.held_objects.values()
         residual = count_clashes(state.frame, state.occupancy, held_objects, found.landing, ranges)
         lifted = Explanation("lifted", found.landing, state.frame, residual, 1.0, place_error=found.error)
-    weighed = [one._replace(prior_cost=one.prior_cost + best - x) for one, x in zip(explanations, likely, strict=True)]
-    return [*weighed, lifted._replace(prior_cost=best - lifting)]
+    weighed = zip((one for _, one in explanations), likely, strict=True)
+    return [
+        *(one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in weighed),
+        lifted._replace(prior_cost=best - lifting),
+    ]
 
 
 def _likelihood(state: TrackerState, ranges: FieldRanges, explanation: Explanation) -> float:

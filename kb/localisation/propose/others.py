@@ -4,13 +4,14 @@ Whole things leave, walls do not. What earlier impressions said of the squares t
 new impression, and those after it, show what is there now.
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
-from utak.kb.localisation.hypotheses.explanation import Explanation, TableChange
+from utak.kb.localisation.hypotheses.explanation import PRICE_PER_NAT, Explanation, TableChange
 from utak.kb.localisation.hypotheses.frames import FieldRanges, Observation, Position, observation_squares
 from utak.kb.localisation.hypotheses.remap import object_at
 from utak.kb.localisation.hypotheses.what_if import count_clashes
@@ -20,13 +21,21 @@ from utak.kb.mapping.patch import patch_of_squares
 from utak.kb.objects.held_object import HeldObject, Square, subtract_held_objects
 from utak.kb.perception.frame import Frame, Samples
 
+BLOCKED_PRICE = 16  # of a motion that ended early, as in kb/asp/accommodation.lp
 SAME_THING_DISTANCE = 2  # squares between squares that changed which count as one thing: half of the largest field
 
 
 def propose_changes(state: TrackerState, ranges: FieldRanges, places: Iterable[Position]) -> list[Explanation]:
     """Return explanations by which others changed the table, one for each place where the look may have been made."""
-    found = (_changed_at(state, ranges, place) for place in dict.fromkeys(places))
-    return [one for one in found if one is not None]
+    there = list(dict.fromkeys(places))
+    found = (_changed_at(state, ranges, place) for place in there)
+    early = (math.dist(place, there[0]) for place in there)
+    # A motion that ended early is as unlikely as without others: kb/asp/accommodation.lp
+    return [
+        one if not far else one._replace(chance=math.exp(-(BLOCKED_PRICE + math.ceil(far)) / PRICE_PER_NAT))
+        for one, far in zip(found, early, strict=True)
+        if one is not None
+    ]
 
 
 def _changed_at(state: TrackerState, ranges: FieldRanges, place: Position) -> Explanation | None:
