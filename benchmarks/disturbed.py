@@ -39,7 +39,12 @@ from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.world import World
 
 ACTS = ("move", "lift", "appear", "vanish")
-TASKS = {"move": (3, 5, 6, 7, 8, 9), "lift": (1, 2, 3, 5, 6, 7, 9), "appear": (1, 2, 3, 5, 6, 7), "vanish": (3, 5, 6, 7)}
+TASKS = {
+    "move": (3, 5, 6, 7, 8, 9),
+    "lift": (1, 2, 3, 5, 6, 7, 9),
+    "appear": (1, 2, 3, 5, 6, 7),
+    "vanish": (3, 5, 6, 7),
+}
 AT_THING = 3  # the task to go to a thing
 MIN_AWAY = 3.0  # squares by which the robot or a thing is put elsewhere at least; a convention
 MIN_ROOM = 2.0  # squares that are left about a thing that is put somewhere; a convention
@@ -226,7 +231,9 @@ def summary(rows: Sequence[Row]) -> Iterator[str]:
         own = [row for row in rows if row.act == act]
         if not own:
             continue
-        noticed, placed = ([getattr(row, key) for row in own if getattr(row, key) is not None] for key in ("noticed", "placed"))
+        noticed, placed = (
+            [getattr(row, key) for row in own if getattr(row, key) is not None] for key in ("noticed", "placed")
+        )
         soon = sum(row.looks is not None and row.looks <= LOOKS_TO_KNOW for row in own)
         told = [f"{len(own)} worlds", f"done {sum(row.achieved for row in own)}"]
         told += [f"noticed at once {sum(noticed)} of {len(noticed)}"] if act in ("move", "vanish") else []

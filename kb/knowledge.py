@@ -211,4 +211,4 @@ class Knowledge:
         self.tracker.keep_things(
             {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}
         )
-        return replace(model, objects=self.objects)
+        return replace(model, objects=self.objects, missing=self._names.missing)

@@ -48,7 +48,9 @@ def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, mot
     end = predicted_outcome(state.place, held.polygon, motion)
     carried = held.moved(end.polygon, held.slack, end.degrees, commanded=True)
     after = replace(state, held_objects={**state.held_objects, held.name: carried})
-    return judged._replace(explanation=with_others(state, judged.explanation, surprise.ranges, [state.place], after, end))
+    return judged._replace(
+        explanation=with_others(state, judged.explanation, surprise.ranges, [state.place], after, end)
+    )
 
 
 def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:

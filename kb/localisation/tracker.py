@@ -88,7 +88,7 @@ class Tracker:
         self.state = former
         self._put_elsewhere(found.error)
         for look, observation in zip(state.looks, state.observations, strict=True):
-            place = found.landing[0] + look.away[0], found.landing[1] + look.away[1]
+            place = found.place[0] + look.away[0] - away[0], found.place[1] + look.away[1] - away[1]
             clashes = residual_at(self.state, observation.ranges, place, self.state.held_objects.values())
             lifted = Explanation("lifted", place, former.frame, clashes, 1.0)
             accommodated = self._integrate(lifted, observation.ranges)

@@ -42,6 +42,11 @@ class ObjectNames:
         self._squares = {names[i]: own for i, own in enumerate(squares)}
         return [names[i] for i in range(len(patches))]
 
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The names of things that are no longer where they lay, and were not seen since."""
+        return tuple(sorted(self._missing))
+
     def miss(self, names: Iterable[str]) -> None:
         """Note that things are no longer where they lay: a new patch that is as large as one of them is that thing."""
         self._missing |= {name: len(self._squares.pop(name)) for name in names if name in self._squares}

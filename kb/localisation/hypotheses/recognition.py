@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from utak.geometry.counts.retina import FIELDS
-from utak.geometry.kernels.arrays import Longs, Square
+from utak.geometry.counts.retina import FIELDS, RETINA_REACH
+from utak.geometry.kernels.arrays import Bools, Longs, Square
 from utak.kb.localisation.hypotheses.frames import FieldRanges, OriginBox, Position
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
@@ -44,9 +44,8 @@ class Look(NamedTuple):
 class Recognised(NamedTuple):
     """A place on a known map where all looks fit."""
 
-    landing: Position  # where the robot was put down, (x, y) in squares, map frame
+    place: Position  # where the newest look was made, (x, y) in squares, map frame
     error: OriginBox  # how far it may truly lie from there: west, south, east, north, in squares
-    chance: float  # one of so many places: the probability of it before any look
 
 
 class KnownMap:
@@ -73,14 +72,15 @@ class KnownMap:
         chances[~occupancy.seen & (states == OPEN)] = np.nan
         for square in changed:
             chances[occupancy.index(*square)] = np.nan
-        self._places = (states != OCCUPIED) & occupancy.seen
+        self._standing = states == OCCUPIED
+        self._places = ~self._standing & _within_reach(occupancy.seen)
         self._index, self._samples, self._earlier = occupancy.index, samples, earlier
         padded = np.pad(chances.astype(np.float32), SIGHT_RANGE, constant_values=np.nan)
         self._chances, self._columns = padded.ravel(), padded.shape[1]
 
     def scores(self, ranges: FieldRanges) -> Scores:
-        """Return by how much an impression favours each square; -inf where the robot cannot have been."""
-        scores = np.full(self._places.shape, -np.inf, np.float32)
+        """Return by how much an impression favours each square; -inf where something stands, 0 where nothing is known."""
+        scores = np.where(self._standing, np.float32(-np.inf), np.float32(0))
         rows, columns = np.nonzero(self._places)
         for begin in range(0, len(rows), CHUNK):
             part = slice(begin, begin + CHUNK)
@@ -109,9 +109,18 @@ class KnownMap:
         return np.nan_to_num(np.maximum(np.log(np.maximum(likely, MIN_LIKELIHOOD)) + told, -MISFIT_LOSS))
 
 
+def _within_reach(seen: Bools) -> Bools:
+    """Return the squares from which at least half of the retina's width shows squares that were seen."""
+    near = seen.copy()
+    for axis in (0, 1):
+        wide = np.pad(near, [(RETINA_REACH // 2, RETINA_REACH // 2) if a == axis else (0, 0) for a in (0, 1)])
+        near = np.lib.stride_tricks.sliding_window_view(wide, RETINA_REACH + 1, axis).any(-1)
+    return np.asarray(near)
+
+
 def mean_likelihood(scores: Scores) -> float:
     """Return how much a look favours that the robot is anywhere on a map, or where nothing is known, in nats."""
-    known = scores[np.isfinite(scores)]
+    known = scores[_is_known(scores)]
     best = max(float(known.max(initial=0.0)), 0.0)
     anywhere = float(np.exp(known - best).sum()) / max(len(known), 1)
     return best + math.log((anywhere + math.exp(-best)) / 2)
@@ -139,11 +148,11 @@ def _told(ranges: FieldRanges, earlier: Sequence[FieldRanges]) -> NDArray[np.flo
 
 
 def recognise(occupancy: OccupancyMap, looks: Sequence[Look]) -> Recognised | None:
-    """Return where the robot was put down on a map; None where no place, or more than one, fits what it saw."""
+    """Return where the newest look was made on a map; None where no place, or more than one, fits what was seen."""
     steps = (np.arange(SUBSQUARES) + 0.5) / SUBSQUARES
     offsets = [(u, v) for v in steps for u in steps] if len(looks) > 1 else [(0.5, 0.5)]
     totals = np.stack([_total(looks, offset) for offset in offsets])
-    count = int(np.isfinite(looks[0].scores).sum())
+    count = int(_is_known(looks[-1].scores).sum())
     best = float(totals.max(initial=-np.inf))
     if not count or best < math.log(count) + MIN_LEAD:
         return None
@@ -156,21 +165,28 @@ def recognise(occupancy: OccupancyMap, looks: Sequence[Look]) -> Recognised | No
     half = 0.5 / SUBSQUARES if len(looks) > 1 else 0.5
     middle = (first + last) / 2
     (west, south), (east, north) = (first - half - middle).tolist(), (last + half - middle).tolist()
-    return Recognised((float(middle[0]), float(middle[1])), (west, south, east, north), 1.0 / count)
+    return Recognised((float(middle[0]), float(middle[1])), (west, south, east, north))
+
+
+def _is_known(scores: Scores) -> Bools:
+    """Return of which squares a map tells something."""
+    return np.isfinite(scores) & (scores != 0)
 
 
 def _total(looks: Sequence[Look], offset: Position) -> Scores:
-    """Return the scores of all looks together by the square where the robot was put down, at a point of the square."""
-    total = looks[0].scores.copy()
-    for look in looks[1:]:
-        dx, dy = (math.floor(o + a) for o, a in zip(offset, look.away, strict=True))
+    """Return the scores of all looks together by the square of the newest one, made at a point of that square."""
+    newest = looks[-1]
+    total = newest.scores.copy()
+    for look in looks[:-1]:
+        steps = zip(offset, look.away, newest.away, strict=True)
+        dx, dy = (math.floor(within + then - now) for within, then, now in steps)
         total += _shifted(look.scores, dx, dy)
     return total
 
 
 def _shifted(scores: Scores, dx: int, dy: int) -> Scores:
-    """Return scores by the squares from which (dx, dy) leads to those given; -inf beyond the map."""
-    shifted = np.full(scores.shape, -np.inf, np.float32)
+    """Return scores by the squares from which (dx, dy) leads to those given; 0 beyond the map."""
+    shifted = np.zeros(scores.shape, np.float32)
     rows, columns = scores.shape
     to = slice(max(-dy, 0), min(rows - dy, rows)), slice(max(-dx, 0), min(columns - dx, columns))
     origin = slice(max(dy, 0), min(rows + dy, rows)), slice(max(dx, 0), min(columns + dx, columns))

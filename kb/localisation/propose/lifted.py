@@ -27,8 +27,8 @@ def weighed_with_lifting(
     lifted = Explanation("lost", state.place, state.frame, 0, 1.0)
     if found is not None:
         held_objects = state.held_objects.values()
-        residual = count_clashes(state.frame, state.occupancy, held_objects, found.landing, ranges)
-        lifted = Explanation("lifted", found.landing, state.frame, residual, 1.0, place_error=found.error)
+        residual = count_clashes(state.frame, state.occupancy, held_objects, found.place, ranges)
+        lifted = Explanation("lifted", found.place, state.frame, residual, 1.0, place_error=found.error)
     weighed = zip((one for _, one in explanations), likely, strict=True)
     return [
         *(one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in weighed),

@@ -135,7 +135,9 @@ def _count_parts(squares: frozenset[Square]) -> int:
     near = mask.copy()
     for _ in range(SAME_THING_DISTANCE // 2):
         wide = np.pad(near, 1)
-        near = np.logical_or.reduce([wide[1 + dy :, 1 + dx :][: near.shape[0], : near.shape[1]] for dy in (-1, 0, 1) for dx in (-1, 0, 1)])
+        near = np.logical_or.reduce(
+            [wide[1 + dy :, 1 + dx :][: near.shape[0], : near.shape[1]] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
+        )
     return int(components(near).labels.max())
 
 
