@@ -71,7 +71,7 @@ class TrackerState:
     things: Mapping[str, frozenset[Square]] = field(default_factory=dict)
     place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)  # how far Utak may be from `place` since it was lifted: W, S, E, N
     lifted_at: frozenset[int] = frozenset()  # the numbers of the observations before which it was put elsewhere
-    # What was believed before it was put somewhere that was not recognised yet, and what it saw since; map frame of that
+    # What was believed before it was put where it recognised nothing yet, and what it saw since, map frame of that
     former: "TrackerState | None" = None
     looks: tuple[Look, ...] = ()
 

@@ -2,8 +2,8 @@
 
 `impossible` is claimed only of what holds under every completion of what is open. A wall that was only seen may be a
 thing that can be moved; the floor may go on where nothing was seen; a thing that was never moved may be more than one
-thing; an opening that fills no whole square looks like wall; a thing that others moved lies somewhere. While one of these is open, the verdict is `possible_if`,
-and its reason names the fact.
+thing; an opening that fills no whole square looks like wall; a thing that others moved lies somewhere. While one of
+these is open, the verdict is `possible_if`, and its reason names the fact.
 """
 
 import math

@@ -33,7 +33,8 @@ class Explanation(NamedTuple):
     # slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or this
     # one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held object is
     # smaller or larger than it seemed), parted (as commanded, but the held object is only a part of what seemed one
-    # thing), changed (others moved things), lifted (others put the robot elsewhere); or lost or anew after a new beginning.
+    # thing), changed (others moved things), lifted (others put the robot elsewhere), lost (it is not known where);
+    # or lost or anew after a new beginning.
     how: str
     place: Position  # where the observation was made, (x, y) in squares, map frame of `frame`
     frame: Frame  # the frame by this explanation

@@ -19,16 +19,15 @@ from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
-# Nats by which the best place must lead: twice those within which explanations are kept side by side, since open squares
+# Nats by which the best place must lead: twice those within which explanations are kept side by side, for open squares
 # are weighed as if they were independent
 MIN_LEAD = 12.0
 MISFIT_LOSS = 10.0  # nats that a field of noise costs, as in kb/asp/accommodation.lp
-# Nats that it costs on top of that where a place is recognised: the map is not to be wrong, and others not to have moved
-# things as well, where the robot was lifted
+# Nats that it costs on top of that where a place is recognised: hardly is the map wrong there, or a thing moved, too
 FORBIDDEN_LOSS = 20.0
 SUBSQUARES = 8  # places within a square that are told apart, along each axis: squares of 1/8; bounds the time
-MIN_VARIANCE = 0.01  # squares^2 of a field's count where all its squares are settled: it is the count, nearly
-MIN_LIKELIHOOD = 1e-9  # below which a field counts as forbidden, so that its logarithm is finite
+MIN_VARIANCE = 0.01  # squares^2, of a field's count where all its squares are settled: no count but that fits
+MIN_LIKELIHOOD = 1e-9  # probability below which a field counts as forbidden: its logarithm is finite
 CHUNK = 256  # places that are judged at once: bounds memory
 
 Scores = NDArray[np.float32]  # (rows, columns) of a map: the nats by which a look favours each square
@@ -79,7 +78,7 @@ class KnownMap:
         self._chances, self._columns = padded.ravel(), padded.shape[1]
 
     def scores(self, ranges: FieldRanges) -> Scores:
-        """Return by how much an impression favours each square; -inf where something stands, 0 where nothing is known."""
+        """Return by how much an impression favours each square: -inf where something stands, 0 where all is open."""
         scores = np.where(self._standing, np.float32(-np.inf), np.float32(0))
         rows, columns = np.nonzero(self._places)
         for begin in range(0, len(rows), CHUNK):
@@ -106,16 +105,17 @@ class KnownMap:
         low, high = ranges[:, 0] - samples.slack, ranges[:, 1]
         likely = ndtr((high + 0.5 - mean) / spread) - ndtr((low - 0.5 - mean) / spread)
         told = _told(ranges, self._earlier)
-        return np.nan_to_num(np.maximum(np.log(np.maximum(likely, MIN_LIKELIHOOD)) + told, -MISFIT_LOSS))
+        gains: NDArray[np.float32] = np.nan_to_num(np.log(np.maximum(likely, MIN_LIKELIHOOD)) + told)
+        return np.maximum(gains, -MISFIT_LOSS)
 
 
 def _within_reach(seen: Bools) -> Bools:
     """Return the squares from which at least half of the retina's width shows squares that were seen."""
-    near = seen.copy()
+    near: Bools = seen.copy()
     for axis in (0, 1):
         wide = np.pad(near, [(RETINA_REACH // 2, RETINA_REACH // 2) if a == axis else (0, 0) for a in (0, 1)])
-        near = np.lib.stride_tricks.sliding_window_view(wide, RETINA_REACH + 1, axis).any(-1)
-    return np.asarray(near)
+        near = np.asarray(np.lib.stride_tricks.sliding_window_view(wide, RETINA_REACH + 1, axis).any(-1))
+    return near
 
 
 def mean_likelihood(scores: Scores) -> float:
@@ -170,7 +170,8 @@ def recognise(occupancy: OccupancyMap, looks: Sequence[Look]) -> Recognised | No
 
 def _is_known(scores: Scores) -> Bools:
     """Return of which squares a map tells something."""
-    return np.isfinite(scores) & (scores != 0)
+    known: Bools = np.isfinite(scores) & (scores != 0)
+    return known
 
 
 def _total(looks: Sequence[Look], offset: Position) -> Scores:

@@ -12,6 +12,7 @@ from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.run.story import recorded_story
 
+EXAMPLE = Path(__file__).resolve().parents[3] / "examples" / "push_square_corner"
 WORLD = """
 bbbbbbbbbbbbbbbbbbbbbbbb
 b......................b
@@ -106,3 +107,30 @@ def test_the_independent_judge_finds_nothing(folder: Path) -> None:
     assert main(["run", scene, "--disturb", str(others), "--log", str(log), "--max-steps", "7"]) in (0, 1, 75)
     judged = subprocess.run([sys.executable, os.environ["UTAK_JUDGE"], str(world), str(log)], capture_output=True)
     assert judged.returncode == 0, judged.stdout
+
+
+def run_disturbed(folder: Path, facts: str) -> utak.Episode:
+    """Return the episode of an example in which a square is pushed into a corner, disturbed by some facts."""
+    (folder / "acts.lp").write_text(facts)
+    return utak.Run(EXAMPLE, seed=0, disturb=folder / "acts.lp").finish()
+
+
+def test_a_thing_that_others_moved_is_noticed_at_once_and_the_task_goes_on(tmp_path: Path) -> None:
+    episode = run_disturbed(tmp_path, 'move(g1, "POINT (19.5 17.5)", 2).')
+    assert (episode.verdict, episode.achieved) == ("done", True)
+    assert [step.line["belief"]["pose"] for step in episode][2] == "changed"
+    assert episode[-1].world.query("bound(x, o1)").kind == "yes"  # it is the same thing
+
+
+def test_a_lifted_robot_knows_where_it_is_and_the_task_goes_on(tmp_path: Path) -> None:
+    episode = run_disturbed(tmp_path, 'lift(utak, "POINT (27.3 5.2)", 3).')
+    assert (episode.verdict, episode.achieved) == ("done", True)
+    line, first = episode[3].line, episode[0].line
+    assert line["belief"]["pose"] == "lifted"
+    true = [here - woke for here, woke in zip(line["utak"], first["utak"], strict=True)]
+    assert line["belief"]["place"] == pytest.approx(true, abs=1.0)
+
+
+def test_a_thing_that_others_took_for_good_makes_no_verdict_impossible(tmp_path: Path) -> None:
+    episode = run_disturbed(tmp_path, "vanish(g1, 2).")
+    assert episode.verdict in ("possible_if", "limit")
