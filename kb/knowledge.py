@@ -115,7 +115,8 @@ class Knowledge:
         if accommodated.explanation.change is not None:  # others changed what is there
             change = accommodated.explanation.change
             self._touches.forget(change.squares)
-            self._names.miss([node.name for node in self.objects if node.name in change.gone])
+            gone = (node for node in self.objects if node.name in change.gone)
+            self._names.miss({node.name: len(node.patch.squares()) for node in gone})
             self._completions = NO_COMPLETION_SUMMARY
         self._feel(impression)
         view = self._map()

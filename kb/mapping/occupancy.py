@@ -163,6 +163,19 @@ class OccupancyMap:
         state[where[single, entry]] = np.where(ranges[single, 0] > 0, OCCUPIED, FREE)
         return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
+    def newly_occupied(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> set[Square]:
+        """Return the squares that an impression shows to be occupied, though counts of earlier ones forbid it."""
+        self.make_room(x, y)
+        where, state = self._under(samples, x, y), self.state.ravel().copy()
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & (ranges[:, 0] > 0)
+        shown = where[single, samples.weight[single].argmax(1)]
+        state[shown] = OCCUPIED
+        wrong = np.zeros(len(self._low), np.bool_)
+        misfits(state, *self._fields, wrong)
+        against = np.intersect1d(self._where[wrong][self._weight[wrong] > 0], shown)
+        rows, columns = np.divmod(against, self.state.shape[1])
+        return set(zip((columns + self.west).tolist(), (rows + self.south).tolist(), strict=True))
+
     def observe(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Add one impression to the map."""
         arrays = (samples.columns, samples.rows, samples.weight, ranges)

@@ -4,7 +4,7 @@ A patch of squares keeps the name of the patch of the last impression with which
 """
 
 from collections import Counter
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Mapping
 
 from utak.geometry.kernels.arrays import Square
 from utak.kb.mapping.patch import Patch
@@ -47,9 +47,11 @@ class ObjectNames:
         """The names of things that are no longer where they lay, and were not seen since."""
         return tuple(sorted(self._missing))
 
-    def miss(self, names: Iterable[str]) -> None:
-        """Note that things are no longer where they lay: a new patch that is as large as one of them is that thing."""
-        self._missing |= {name: len(self._squares.pop(name)) for name in names if name in self._squares}
+    def miss(self, sizes: Mapping[str, int]) -> None:
+        """Note that things of so many squares are no longer where they lay: a new patch as large is that thing."""
+        self._missing |= sizes
+        for name in sizes:
+            self._squares.pop(name, None)
 
     def _returned(self, new: Mapping[int, int]) -> list[tuple[int, str]]:
         """Return which new patches are missing things, by how many squares they have; those most alike first."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from utak.geometry.counts.retina import FIELDS, RETINA_REACH
-from utak.geometry.kernels.arrays import Bools, Longs, Square
+from utak.geometry.kernels.arrays import Bools, Longs
 from utak.kb.localisation.hypotheses.frames import FieldRanges, OriginBox, Position
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
@@ -56,12 +56,11 @@ class KnownMap:
         things: Iterable[tuple[Patch, Patch]],
         samples: Samples,
         earlier: Sequence[FieldRanges],
-        changed: Iterable[Square] = (),
     ) -> None:
         """Prepare the comparison; nothing is changed.
 
         things : the squares that held things surely cover, and those that they may cover. earlier : the impressions by
-        which the map was made. changed : squares of which the map tells nothing any more.
+        which the map was made.
         """
         states = occupancy.state.copy()
         for sure, possible in things:
@@ -69,8 +68,6 @@ class KnownMap:
                 states[occupancy.squares(*patch)] = value
         chances = np.where(states == OPEN, 1.0 / (1.0 + np.exp(-occupancy.logit)), states == OCCUPIED)
         chances[~occupancy.seen & (states == OPEN)] = np.nan
-        for square in changed:
-            chances[occupancy.index(*square)] = np.nan
         self._standing = states == OCCUPIED
         self._places = ~self._standing & _within_reach(occupancy.seen)
         self._index, self._samples, self._earlier = occupancy.index, samples, earlier

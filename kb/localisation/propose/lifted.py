@@ -4,14 +4,13 @@ That it was lifted is as likely as what it sees is on the known map in the mean,
 place alone fits it is known where; otherwise a new map is begun, and the old one kept to be recognised later.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import FieldRanges, Position
 from utak.kb.localisation.hypotheses.recognition import KnownMap, Look, mean_likelihood, recognise
 from utak.kb.localisation.hypotheses.what_if import count_clashes
 from utak.kb.localisation.state import TrackerState
-from utak.kb.objects.held_object import Square
 
 
 def weighed_with_lifting(
@@ -40,15 +39,14 @@ def _likelihood(state: TrackerState, ranges: FieldRanges, explanation: Explanati
     """Return how much the look favours where an explanation says it was made, in nats, beside its fields of noise."""
     if explanation.frame != state.frame:
         return known_map(state).score_at(ranges, state.place)
-    changed = () if explanation.change is None else explanation.change.squares
-    return known_map(state, changed).score_at(ranges, explanation.place)
+    return known_map(state).score_at(ranges, explanation.place)
 
 
-def known_map(state: TrackerState, changed: Iterable[Square] = ()) -> KnownMap:
-    """Return the believed map with what lies on it. changed : squares of which it tells nothing any more."""
+def known_map(state: TrackerState) -> KnownMap:
+    """Return the believed map with what lies on it."""
     things = [(held.sure, held.possible) for held in state.held_objects.values()]
     earlier = [observation.ranges for observation in state.observations]
-    return KnownMap(state.occupancy, things, state.frame.samples(), earlier, changed)
+    return KnownMap(state.occupancy, things, state.frame.samples(), earlier)
 
 
 def look_at(state: TrackerState, ranges: FieldRanges, away: Position = (0.0, 0.0)) -> Look:

@@ -17,7 +17,7 @@ from utak.kb.localisation.hypotheses.remap import object_at
 from utak.kb.localisation.hypotheses.what_if import count_clashes
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
-from utak.kb.mapping.patch import patch_of_squares
+from utak.kb.mapping.patch import patch_of_polygon, patch_of_squares
 from utak.kb.objects.held_object import HeldObject, Square, subtract_held_objects
 from utak.kb.perception.frame import Frame, Samples
 
@@ -28,7 +28,11 @@ SAME_THING_DISTANCE = 2  # squares between squares that changed which count as o
 def propose_changes(state: TrackerState, ranges: FieldRanges, places: Iterable[Position]) -> list[Explanation]:
     """Return explanations by which others changed the table, one for each place where the look may have been made."""
     there = list(dict.fromkeys(places))
-    found = (_changed_at(state, ranges, place) for place in there)
+    found = [_changed_at(state, ranges, there[0])]
+    if found[0] is None or found[0].residual:  # the motion may have ended early, where one act of others explains all
+        early_ends = (_changed_at(state, ranges, place) for place in there[1:])
+        found += [one if one and not one.residual and one.distance == 1 else None for one in early_ends]
+    there = there[: len(found)]
     early = (math.dist(place, there[0]) for place in there)
     # A motion that ended early is as unlikely as without others: kb/asp/accommodation.lp
     return [
@@ -50,8 +54,13 @@ def _changed_at(state: TrackerState, ranges: FieldRanges, place: Position) -> Ex
         return None
     occupancy = state.occupancy.copy()
     occupancy.withdraw_patch(patch_of_squares(squares | new))
+    x, y = math.floor(place[0]), math.floor(place[1])
+    against = occupancy.newly_occupied(*subtract_held_objects(state.frame.samples(), ranges, x, y, left), x, y)
+    if against:  # squares that were open one by one, of which earlier counts together say that fewer are occupied
+        new |= against
+        occupancy.withdraw_patch(patch_of_squares(against))
     residual = count_clashes(state.frame, occupancy, left, place, ranges)
-    parts = 0 if not new else _count_parts(new - squares) if new - squares else 0
+    parts = _count_parts(new - squares) if new - squares else 0
     change = TableChange(tuple(sorted(gone)), squares | new, parts)
     acts = max(len(gone), parts)
     return Explanation("changed", place, state.frame, residual, acts, change=change)
@@ -61,7 +70,7 @@ def _gone_things(
     state: TrackerState, ranges: FieldRanges, place: Position, things: Mapping[str, set[Square]]
 ) -> list[str]:
     """Return the names of the fewest things that are gone where the look shows too little, as far as things explain."""
-    x, y = int(np.floor(place[0])), int(np.floor(place[1]))
+    x, y = math.floor(place[0]), math.floor(place[1])
     samples, gone = state.frame.samples(), list[str]()
     under = _squares_under(samples, x, y)
     while True:
@@ -78,7 +87,7 @@ def _new_squares(
     state: TrackerState, ranges: FieldRanges, place: Position, left: Sequence[HeldObject], gone: frozenset[Square]
 ) -> frozenset[Square]:
     """Return the squares of floor on which something may stand now, since the look shows too much."""
-    x, y = int(np.floor(place[0])), int(np.floor(place[1]))
+    x, y = math.floor(place[0]), math.floor(place[1])
     samples = state.frame.samples()
     surplus = _balance(state, ranges, place, left, gone)[1]
     under = _squares_under(samples, x, y)
@@ -96,7 +105,7 @@ def _balance(
     state: TrackerState, ranges: FieldRanges, place: Position, held: Iterable[HeldObject], opened: Iterable[Square]
 ) -> tuple[Bools, Bools]:
     """Return which fields show less than the map and held objects allow, and which show more; opened squares may be."""
-    x, y = int(np.floor(place[0])), int(np.floor(place[1]))
+    x, y = math.floor(place[0]), math.floor(place[1])
     occupancy = state.occupancy
     occupancy.make_room(x, y)
     samples, counts = subtract_held_objects(state.frame.samples(), ranges, x, y, held)
@@ -152,6 +161,9 @@ def forgetting(
         for pose in observation.moved:
             if pose.name in named:
                 squares |= object_at(named[pose.name], pose, frame).possible.squares()
+        known = {pose.name for pose in observation.moved}
+        for held in gone:
+            squares |= patch_of_polygon(held.first).squares() if held.name not in known else set()
         moved = tuple(pose for pose in observation.moved if pose.name not in named)
         told.append(observation._replace(ranges=silenced(observation.ranges, samples, x, y, squares), moved=moved))
     return tuple(told)

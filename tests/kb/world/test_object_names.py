@@ -18,7 +18,7 @@ def test_a_patch_keeps_the_name_of_the_patch_that_it_overlaps() -> None:
 def test_a_missing_thing_is_the_new_patch_that_is_most_nearly_as_large() -> None:
     names = ObjectNames()
     names.assign([block(0, 0, 3, 3)])
-    names.miss(["o1", "o7"])
+    names.miss({"o1": 9})
     assert names.missing == ("o1",)
     assert names.assign([block(40, 0, 9, 9)]) == ["o2"]  # nine times as large: another thing
     assert names.assign([block(40, 0, 9, 9), block(20, 0, 1, 4), block(30, 0, 4, 3)]) == ["o2", "o3", "o1"]
