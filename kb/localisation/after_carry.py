@@ -1,5 +1,6 @@
 """Explanations of an observation after a push or a turn with an object in hand, and the object's state after it."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -196,8 +197,14 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
     for name, held in state.held_objects.items():
         far = np.hypot(*(away - Rotate(held.turned, (0.0, 0.0)).points(away)).T)
         least = COMMAND_ROUNDING if state.beside_line and held.turned % 360 else 0.0
+        least = max(least, turned_astray(state, held.turned))
         held_objects[name] = replace(held, astray=float(far.max(initial=least)))
     return held_objects
+
+
+def turned_astray(state: TrackerState, degrees: float) -> float:
+    """Return how far a turn leads an object astray, in squares, whose centre is known as well as the robot's place."""
+    return 2 * state.place_doubt * abs(math.sin(math.radians(degrees / 2)))
 
 
 def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:

@@ -70,6 +70,9 @@ class TrackerState:
     # The squares of things that were seen and never held, by name, map frame: whole things can be moved by others
     things: Mapping[str, frozenset[Square]] = field(default_factory=dict)
     place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)  # how far Utak may be from `place` since it was lifted: W, S, E, N
+    # By square that others changed, map frame: the number of the first observation since; that Utak passed it before says
+    # nothing
+    changed_at: Mapping[Square, int] = field(default_factory=dict)
     lifted_at: frozenset[int] = frozenset()  # the numbers of the observations before which it was put elsewhere
     # What was believed before it was put where it recognised nothing yet, and what it saw since, map frame of that
     former: "TrackerState | None" = None
@@ -118,12 +121,19 @@ class TrackerState:
     def passed(self) -> frozenset[Square]:
         """Return the squares through which the robot went on the present map: (column, row), map frame."""
         ways = enumerate(pairwise(self.track[len(self.been) :]), 1)
-        return frozenset(square for n, way in ways if n not in self.lifted_at for square in squares_passed(*way))
+        walked = ((n, square) for n, way in ways if n not in self.lifted_at for square in squares_passed(*way))
+        return frozenset(square for n, square in walked if n >= self.changed_at.get(square, 0))
 
     @property
     def leeway(self) -> tuple[float, float, float, float]:
         """Return how far the true origin of the frame may lie from the believed one: (west, south, east, north)."""
         return origin_leeway(self.frame, self.observations, self.hypotheses)
+
+    @property
+    def place_doubt(self) -> float:
+        """Return how far Utak may be from the believed place since it was lifted, in squares; 0 when it never was."""
+        west, south, east, north = self.place_error
+        return math.hypot(max(-west, east), max(-south, north))
 
     @property
     def off_middle(self) -> bool:

@@ -18,6 +18,7 @@ from utak.kb.localisation.after_carry import (
     moved_object,
     objects_astray,
     refined_extent,
+    turned_astray,
 )
 from utak.kb.localisation.after_walk import DeadReckoning, explain_walk
 from utak.kb.localisation.field_account import Accommodation, account_for_fields
@@ -214,8 +215,8 @@ class Tracker:
         """Explain and integrate an observation after a push or a turn of the held object `name`."""
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
-        if isinstance(command, Turn) and state.beside_line:
-            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING))
+        if isinstance(command, Turn) and (state.beside_line or state.place_doubt):
+            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
             self.update_object(held)
         judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
         if judged.explanation.how == "lost":
@@ -293,6 +294,7 @@ class Tracker:
             blocked_squares=state.blocked_squares - change.squares,
             suspected_squares=state.suspected_squares - change.squares,
             completions=None,
+            changed_at={**state.changed_at, **dict.fromkeys(change.squares, change_number)},
         )
 
     def _learn(self, judged: Judgement) -> None:

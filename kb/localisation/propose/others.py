@@ -53,15 +53,17 @@ def _changed_at(state: TrackerState, ranges: FieldRanges, place: Position) -> Ex
     if not gone and not new:
         return None
     occupancy = state.occupancy.copy()
-    occupancy.withdraw_patch(patch_of_squares(squares | new))
+    changed = squares | new | _around(state, place, new - squares)
+    occupancy.withdraw_patch(patch_of_squares(changed))
     x, y = math.floor(place[0]), math.floor(place[1])
     against = occupancy.newly_occupied(*subtract_held_objects(state.frame.samples(), ranges, x, y, left), x, y)
     if against:  # squares that were open one by one, of which earlier counts together say that fewer are occupied
         new |= against
+        changed |= against
         occupancy.withdraw_patch(patch_of_squares(against))
     residual = count_clashes(state.frame, occupancy, left, place, ranges)
     parts = _count_parts(new - squares) if new - squares else 0
-    change = TableChange(tuple(sorted(gone)), squares | new, parts)
+    change = TableChange(tuple(sorted(gone)), changed, parts)
     acts = max(len(gone), parts)
     return Explanation("changed", place, state.frame, residual, acts, change=change)
 
@@ -91,14 +93,20 @@ def _new_squares(
     samples = state.frame.samples()
     surplus = _balance(state, ranges, place, left, gone)[1]
     under = _squares_under(samples, x, y)
-    new = {square for field in np.flatnonzero(surplus) for square in under[field]}
-    # Beside them, fields that would show the same with or without a part of the thing leave it open, too.
-    about = {(x + dx, y + dy) for x, y in new for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))} - new
-    for field in np.flatnonzero(ranges[:, 1] > 0):
-        if not about.isdisjoint(under[field]):
-            new |= under[field]
     state_at, index = state.occupancy.state, state.occupancy.index
-    return frozenset(square for square in new if state_at[index(*square)] == FREE)
+    shown = {square for field in np.flatnonzero(surplus) for square in under[field]}
+    return frozenset(square for square in shown if state_at[index(*square)] == FREE)
+
+
+def _around(state: TrackerState, place: Position, squares: Iterable[Square]) -> set[Square]:
+    """Return the squares under all fields about some squares, but those where something stands: they may differ, too."""
+    # A thing covers more squares than those that contradict what was known. What the look shows of them counts from now.
+    x, y = math.floor(place[0]), math.floor(place[1])
+    reach = range(-SAME_THING_DISTANCE, SAME_THING_DISTANCE + 1)
+    near = {(column + dx, row + dy) for column, row in squares for dx in reach for dy in reach}
+    fields = (own for own in _squares_under(state.frame.samples(), x, y) if not own.isdisjoint(near))
+    state_at, index = state.occupancy.state, state.occupancy.index
+    return {square for own in fields for square in own if state_at[index(*square)] != OCCUPIED}
 
 
 def _balance(
