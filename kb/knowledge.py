@@ -67,10 +67,10 @@ class Knowledge:
             self._grasp(command.direction)
         accommodated = self.tracker.accommodate(command, impression)
         if accommodated.explanation.how == "lost":
-            return self._begin_elsewhere(impression)
+            return self._begin_elsewhere(command, impression)
         if self.memory.lost and self.memory.in_hand is None:
             return self.begin_anew(impression, lost=True)
-        return self._update(impression, self._recognised() or accommodated)
+        return self._update(impression, self._recognised(command) or accommodated)
 
     def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodation]:
         """Forget all but the track, and begin a new map with the newest impression."""
@@ -80,7 +80,7 @@ class Knowledge:
         woken = woken._replace(explanation=woken.explanation._replace(how="lost" if lost else "anew"))
         return self._update(impression, woken)
 
-    def _begin_elsewhere(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
+    def _begin_elsewhere(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodation]:
         """Begin a new map with the newest impression, and keep the old one: others put the robot somewhere."""
         if self.memory.former is None:
             self._former_names = deepcopy(self._names)
@@ -88,11 +88,11 @@ class Knowledge:
         self._names.forget()
         woken = self.tracker.wake(impression)
         woken = woken._replace(explanation=woken.explanation._replace(how="lost"))
-        return self._update(impression, self._recognised() or woken)
+        return self._update(impression, self._recognised(command) or woken)
 
-    def _recognised(self) -> Accommodation | None:
+    def _recognised(self, command: Command) -> Accommodation | None:
         """Go on with the map of before if what was seen since fits at one place of it; else return None."""
-        accommodated = self.tracker.recognise()
+        accommodated = self.tracker.recognise(command)
         if accommodated is not None:
             self._names = self._former_names.counted(self._names)
             self._touches.forget_squares()

@@ -48,10 +48,8 @@ def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, mot
     judged = _explain_carry(state, surprise, held, motion)
     end = predicted_outcome(state.place, held.polygon, motion)
     carried = held.moved(end.polygon, held.slack, end.degrees, commanded=True)
-    after = replace(state, held_objects={**state.held_objects, held.name: carried})
-    return judged._replace(
-        explanation=with_others(state, judged.explanation, surprise.ranges, [state.place], after, end)
-    )
+    after = replace(surprise, held_objects={**state.held_objects, held.name: carried})
+    return judged._replace(explanation=with_others(state, surprise, judged.explanation, [state.place], after, end))
 
 
 def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:

@@ -63,10 +63,11 @@ class DeadReckoning:
 def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
     """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand."""
     judged = _WalkExplainer(state, ranges, ends, command).judge()
-    if not state.observations:
+    if command is None:
         return judged
     places = [*observation_places(ends.predicted), *ends.blocked]
-    return judged._replace(explanation=with_others(state, judged.explanation, ranges, places))
+    surprise = state.surprise(command, ranges)
+    return judged._replace(explanation=with_others(state, surprise, judged.explanation, places))
 
 
 class _WalkExplainer:

@@ -181,23 +181,23 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
 
 def with_others(
     state: TrackerState,
+    surprise: Surprise,
     chosen: Explanation,
-    ranges: FieldRanges,
     places: Sequence[Position],
-    carried: TrackerState | None = None,
+    carried: Surprise | None = None,
     outcome: CarryOutcome | None = None,
 ) -> Explanation:
     """Return the choice between an explanation and what others may have done, if it explains badly."""
-    # places : where the look may have been made if others moved things, the likeliest first. carried : the state with
-    # what is in hand where a motion took it, with the outcome of that motion; others may have moved something else.
+    # places : where the look may have been made if others moved things, the likeliest first. carried : the surprise
+    # with what is in hand where a motion took it, and the outcome of that motion; others may have moved other things.
     if not _explains_badly(state, chosen):
         return chosen
-    explanations = [(state, one) for one in (chosen, *propose_changes(state, ranges, places))]
+    explanations = [(surprise, one) for one in (chosen, *propose_changes(surprise, places))]
     if carried is not None and outcome is not None:
-        beside = propose_changes(carried, ranges, [outcome.place])
+        beside = propose_changes(carried, [outcome.place])
         others = [one for one in beside if one.change is not None and state.in_hand not in one.change.gone]
         explanations += [(carried, one._replace(outcome=outcome)) for one in others]
-    return choose(state, weighed_with_lifting(state, ranges, explanations))
+    return choose(state, weighed_with_lifting(surprise, explanations))
 
 
 def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:

@@ -70,11 +70,10 @@ class TrackerState:
     # The squares of things that were seen and never held, by name, map frame: whole things can be moved by others
     things: Mapping[str, frozenset[Square]] = field(default_factory=dict)
     place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)  # how far Utak may be from `place` since it was lifted: W, S, E, N
-    # By square that others changed, map frame: the number of the first observation since; that Utak passed it before says
-    # nothing
+    # By square that others changed, map frame: the number of the first observation since
     changed_at: Mapping[Square, int] = field(default_factory=dict)
     lifted_at: frozenset[int] = frozenset()  # the numbers of the observations before which it was put elsewhere
-    # What was believed before it was put where it recognised nothing yet, and what it saw since, map frame of that
+    # What was believed before it was put where it recognised nothing yet, and what it saw since
     former: "TrackerState | None" = None
     looks: tuple[Look, ...] = ()
 
@@ -91,6 +90,7 @@ class TrackerState:
             self.in_hand,
             self.hypotheses,
             self.completions,
+            self.things,
         )
 
     def places_near(self, place: Position) -> list[Position]:

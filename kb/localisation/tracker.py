@@ -75,14 +75,16 @@ class Tracker:
         begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
         return Tracker(replace(begun, former=state.former or state))
 
-    def recognise(self) -> Accommodation | None:
+    def recognise(self, command: Command) -> Accommodation | None:
         """Look for the newest observations on the map of before; go on with that if they fit at one place of it."""
         state, former = self.state, self.state.former
         if former is None:
             return None
         first, newest = state.observations[0].place, state.observations[-1]
         away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
-        self.state = state = replace(state, looks=(*state.looks, look_at(former, newest.ranges, away)))
+        self.state = state = replace(
+            state, looks=(*state.looks, look_at(former.surprise(command, newest.ranges), away))
+        )
         found = None if state.held_objects else recognise(former.occupancy, state.looks)
         if found is None:
             return None

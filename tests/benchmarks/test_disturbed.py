@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.disturbed import Row, disturbance, summary
+from benchmarks.disturbed.run import Row, disturbance, summary
 from benchmarks.worlds.makers import scenario
 from utak.kb.language.source_text import source_from_bytes
 from utak.simulator.scenario.disturbances import disturbed_world

@@ -19,7 +19,7 @@ MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no les
 
 
 class TableChange(NamedTuple):
-    """What others changed on the table between two observations."""
+    """A change of the table by others between two observations."""
 
     gone: tuple[str, ...]  # the names of the things that are no longer where they lay, sorted
     squares: frozenset[Square]  # where something changed, map frame: earlier observations say nothing of these

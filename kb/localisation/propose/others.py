@@ -14,8 +14,7 @@ from utak.geometry.raster.components import components
 from utak.kb.localisation.hypotheses.explanation import PRICE_PER_NAT, Explanation, TableChange
 from utak.kb.localisation.hypotheses.frames import FieldRanges, Observation, Position, observation_squares
 from utak.kb.localisation.hypotheses.remap import object_at
-from utak.kb.localisation.hypotheses.what_if import count_clashes
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.mapping.patch import patch_of_polygon, patch_of_squares
 from utak.kb.objects.held_object import HeldObject, Square, subtract_held_objects
@@ -25,12 +24,12 @@ BLOCKED_PRICE = 16  # of a motion that ended early, as in kb/asp/accommodation.l
 SAME_THING_DISTANCE = 2  # squares between squares that changed which count as one thing: half of the largest field
 
 
-def propose_changes(state: TrackerState, ranges: FieldRanges, places: Iterable[Position]) -> list[Explanation]:
+def propose_changes(surprise: Surprise, places: Iterable[Position]) -> list[Explanation]:
     """Return explanations by which others changed the table, one for each place where the look may have been made."""
     there = list(dict.fromkeys(places))
-    found = [_changed_at(state, ranges, there[0])]
+    found = [_changed_at(surprise, there[0])]
     if found[0] is None or found[0].residual:  # the motion may have ended early, where one act of others explains all
-        early_ends = (_changed_at(state, ranges, place) for place in there[1:])
+        early_ends = (_changed_at(surprise, place) for place in there[1:])
         found += [one if one and not one.residual and one.distance == 1 else None for one in early_ends]
     there = there[: len(found)]
     early = (math.dist(place, there[0]) for place in there)
@@ -42,41 +41,41 @@ def propose_changes(state: TrackerState, ranges: FieldRanges, places: Iterable[P
     ]
 
 
-def _changed_at(state: TrackerState, ranges: FieldRanges, place: Position) -> Explanation | None:
+def _changed_at(surprise: Surprise, place: Position) -> Explanation | None:
     """Return the explanation that things were moved, and the look was made at `place`; None when nothing changed."""
-    lying = {name: held.possible.squares() for name, held in state.held_objects.items()}
-    things: dict[str, set[Square]] = {**{name: set(own) for name, own in state.things.items()}, **lying}
-    gone = _gone_things(state, ranges, place, things)
-    left = [held for name, held in state.held_objects.items() if name not in gone]
+    lying = {name: held.possible.squares() for name, held in surprise.held_objects.items()}
+    things: dict[str, set[Square]] = {**{name: set(own) for name, own in surprise.things.items()}, **lying}
+    gone = _gone_things(surprise, place, things)
+    left = [held for name, held in surprise.held_objects.items() if name not in gone]
     squares = frozenset(square for name in gone for square in things[name])
-    new = _new_squares(state, ranges, place, left, squares)
+    new = _new_squares(surprise, place, left, squares)
     if not gone and not new:
         return None
-    occupancy = state.occupancy.copy()
-    changed = squares | new | _around(state, place, new - squares)
+    occupancy = surprise.occupancy.copy()
+    changed = squares | new | _around(surprise, place, new - squares)
     occupancy.withdraw_patch(patch_of_squares(changed))
     x, y = math.floor(place[0]), math.floor(place[1])
-    against = occupancy.newly_occupied(*subtract_held_objects(state.frame.samples(), ranges, x, y, left), x, y)
+    against = occupancy.newly_occupied(
+        *subtract_held_objects(surprise.frame.samples(), surprise.ranges, x, y, left), x, y
+    )
     if against:  # squares that were open one by one, of which earlier counts together say that fewer are occupied
         new |= against
         changed |= against
         occupancy.withdraw_patch(patch_of_squares(against))
-    residual = count_clashes(state.frame, occupancy, left, place, ranges)
+    residual = count_clashes(surprise.frame, occupancy, left, place, surprise.ranges)
     parts = _count_parts(new - squares) if new - squares else 0
     change = TableChange(tuple(sorted(gone)), changed, parts)
     acts = max(len(gone), parts)
-    return Explanation("changed", place, state.frame, residual, acts, change=change)
+    return Explanation("changed", place, surprise.frame, residual, acts, change=change)
 
 
-def _gone_things(
-    state: TrackerState, ranges: FieldRanges, place: Position, things: Mapping[str, set[Square]]
-) -> list[str]:
+def _gone_things(surprise: Surprise, place: Position, things: Mapping[str, set[Square]]) -> list[str]:
     """Return the names of the fewest things that are gone where the look shows too little, as far as things explain."""
     x, y = math.floor(place[0]), math.floor(place[1])
-    samples, gone = state.frame.samples(), list[str]()
+    samples, gone = surprise.frame.samples(), list[str]()
     under = _squares_under(samples, x, y)
     while True:
-        lacking = _balance(state, ranges, place, _without(state, gone), _squares_of(things, gone))[0]
+        lacking = _balance(surprise, place, _without(surprise, gone), _squares_of(things, gone))[0]
         fields = [under[field] for field in np.flatnonzero(lacking)]
         shares = {name: sum(not own.isdisjoint(field) for field in fields) for name, own in things.items()}
         left = [(-share, name) for name, share in shares.items() if share and name not in gone]
@@ -86,37 +85,37 @@ def _gone_things(
 
 
 def _new_squares(
-    state: TrackerState, ranges: FieldRanges, place: Position, left: Sequence[HeldObject], gone: frozenset[Square]
+    surprise: Surprise, place: Position, left: Sequence[HeldObject], gone: frozenset[Square]
 ) -> frozenset[Square]:
     """Return the squares of floor on which something may stand now, since the look shows too much."""
     x, y = math.floor(place[0]), math.floor(place[1])
-    samples = state.frame.samples()
-    surplus = _balance(state, ranges, place, left, gone)[1]
+    samples = surprise.frame.samples()
+    surplus = _balance(surprise, place, left, gone)[1]
     under = _squares_under(samples, x, y)
-    state_at, index = state.occupancy.state, state.occupancy.index
+    state_at, index = surprise.occupancy.state, surprise.occupancy.index
     shown = {square for field in np.flatnonzero(surplus) for square in under[field]}
     return frozenset(square for square in shown if state_at[index(*square)] == FREE)
 
 
-def _around(state: TrackerState, place: Position, squares: Iterable[Square]) -> set[Square]:
-    """Return the squares under all fields about some squares, but those where something stands: they may differ, too."""
-    # A thing covers more squares than those that contradict what was known. What the look shows of them counts from now.
+def _around(surprise: Surprise, place: Position, squares: Iterable[Square]) -> set[Square]:
+    """Return the squares under all fields about some squares, but those where something stands."""
+    # A thing covers more squares than those that contradict what was known. What the look shows of them counts.
     x, y = math.floor(place[0]), math.floor(place[1])
     reach = range(-SAME_THING_DISTANCE, SAME_THING_DISTANCE + 1)
     near = {(column + dx, row + dy) for column, row in squares for dx in reach for dy in reach}
-    fields = (own for own in _squares_under(state.frame.samples(), x, y) if not own.isdisjoint(near))
-    state_at, index = state.occupancy.state, state.occupancy.index
+    fields = (own for own in _squares_under(surprise.frame.samples(), x, y) if not own.isdisjoint(near))
+    state_at, index = surprise.occupancy.state, surprise.occupancy.index
     return {square for own in fields for square in own if state_at[index(*square)] != OCCUPIED}
 
 
 def _balance(
-    state: TrackerState, ranges: FieldRanges, place: Position, held: Iterable[HeldObject], opened: Iterable[Square]
+    surprise: Surprise, place: Position, held: Iterable[HeldObject], opened: Iterable[Square]
 ) -> tuple[Bools, Bools]:
     """Return which fields show less than the map and held objects allow, and which show more; opened squares may be."""
     x, y = math.floor(place[0]), math.floor(place[1])
-    occupancy = state.occupancy
+    occupancy = surprise.occupancy
     occupancy.make_room(x, y)
-    samples, counts = subtract_held_objects(state.frame.samples(), ranges, x, y, held)
+    samples, counts = subtract_held_objects(surprise.frame.samples(), surprise.ranges, x, y, held)
     states = occupancy.state.copy()
     for square in opened:
         states[occupancy.index(*square)] = OPEN
@@ -126,8 +125,8 @@ def _balance(
     return np.asarray(occupied > counts[:, 1]), np.asarray(possible < counts[:, 0] - samples.slack)
 
 
-def _without(state: TrackerState, gone: Sequence[str]) -> list[HeldObject]:
-    return [held for name, held in state.held_objects.items() if name not in gone]
+def _without(surprise: Surprise, gone: Sequence[str]) -> list[HeldObject]:
+    return [held for name, held in surprise.held_objects.items() if name not in gone]
 
 
 def _squares_of(things: Mapping[str, set[Square]], names: Iterable[str]) -> set[Square]:

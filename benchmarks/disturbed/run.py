@@ -1,18 +1,6 @@
-"""Runs that others disturb: random worlds, run once as they are, and again with a random disturbance at a random step.
+"""One world run twice: as it is, and with a random disturbance; the row of what came of it, and sums of rows."""
 
-    python -m benchmarks.disturbed [--act move,lift,appear,vanish] [--count N] [--seed S] [--snug] [-o rows.jsonl]
-    python -m benchmarks.disturbed --only move:6:17 --keep FOLDER       (one world; its files and episodes stay)
-
-A row says whether the first look that contradicts what was seen before was noticed, whether the thing is believed
-where it is at the end, whether a lifted robot knew within three looks where it is, and how the run ended. A thing is
-put elsewhere in its room, where there is room about it. A world whose undisturbed run is not achieved is left out.
-"""
-
-import argparse
-import json
 import math
-import sys
-import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +12,7 @@ import shapely
 from shapely.affinity import translate
 
 from benchmarks.harness.judging import findings
-from benchmarks.worlds.makers import add_kinds, scenario
+from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.scenes import RandomScenario, wkt, write
 from utak.geometry.counts.retina import RETINA_REACH
 from utak.kb.language.source_text import source_from_bytes
@@ -45,7 +33,7 @@ TASKS = {
     "appear": (1, 2, 3, 5, 6, 7),
     "vanish": (3, 5, 6, 7),
 }
-AT_THING = 3  # the task to go to a thing
+THING_TASK = 3  # the task to go to a thing
 MIN_AWAY = 3.0  # squares by which the robot or a thing is put elsewhere at least; a convention
 MIN_ROOM = 2.0  # squares that are left about a thing that is put somewhere; a convention
 MAX_KNOWN_ERROR = 1.0  # squares by which a place that is known may be wrong; a convention
@@ -132,7 +120,7 @@ def run(act: str, task: int, seed: int, kind: str, folder: Path) -> Row | None:
     if not fact:
         return None
     (place / "others.lp").write_text(f"{fact}\n")
-    if act == "move" and task == AT_THING:  # the place that is expected is another one
+    if act == "move" and task == THING_TASK:  # the place that is expected is another one
         moved = disturbed_world(read_scenario(place).world, source_from_bytes("others", fact.encode())).disturbances[0]
         lies = moved.outline(world.things[0].polygon, world.plan.width)
         (place / "expect.lp").write_text(f'near(utak, "{wkt(lies)}", 2).\n')
@@ -247,47 +235,3 @@ def summary(rows: Sequence[Row]) -> Iterator[str]:
         told += [f"commands {sum(row.steps for row in own)} (undisturbed {sum(row.before for row in own)})"]
         told += [f"judge's findings {sum(bool(row.judged) for row in own)}"]
         yield f"{act}: {', '.join(told)}"
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Print rows and a summary; return 1 when anything was claimed falsely."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--act", default="move,lift", help="kinds of disturbances (%(default)s)")
-    parser.add_argument("--count", type=int, default=20, help="worlds of each (%(default)s)")
-    parser.add_argument("--seed", type=int, default=0, help="the first seed (%(default)s)")
-    parser.add_argument("--only", metavar="ACT:TASK:SEED", help="one world")
-    parser.add_argument("--keep", type=Path, help="folder in which scenarios and episodes stay")
-    parser.add_argument("-o", "--output", type=Path, help="a JSON line for each row")
-    add_kinds(parser)
-    given = parser.parse_args(arguments)
-    rows: list[Row] = []
-    with tempfile.TemporaryDirectory() as made:
-        folder = given.keep or Path(made)
-        for row in _rows(given, folder):
-            rows.append(row)
-            print(json.dumps(vars(row)), file=sys.stderr, flush=True)
-    if given.output is not None:
-        given.output.write_text("".join(f"{json.dumps(vars(row))}\n" for row in rows))
-    print(*summary(rows), sep="\n")
-    return int(any(row.believed and not row.achieved for row in rows))
-
-
-def _rows(given: argparse.Namespace, folder: Path) -> Iterator[Row]:
-    """Yield the rows that are asked for; worlds in which there is nothing to disturb are passed over."""
-    if given.only:
-        act, task, seed = given.only.split(":")
-        yield from filter(None, [run(act, int(task), int(seed), given.kind, folder)])
-        return
-    for act in given.act.split(","):
-        found, number = 0, 0
-        while found < given.count:
-            tasks = TASKS[act]
-            row = run(act, tasks[number % len(tasks)], given.seed + number // len(tasks), given.kind, folder)
-            number += 1
-            if row is not None:
-                found += 1
-                yield row
-
-
-if __name__ == "__main__":
-    sys.exit(main())
