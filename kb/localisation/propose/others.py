@@ -45,6 +45,8 @@ def _changed_at(surprise: Surprise, place: Position) -> Explanation | None:
     """Return the explanation that things were moved, and the look was made at `place`; None when nothing changed."""
     lying = {name: held.possible.squares() for name, held in surprise.held_objects.items()}
     things: dict[str, set[Square]] = {**{name: set(own) for name, own in surprise.things.items()}, **lying}
+    if surprise.in_hand is not None and _is_seen(surprise, place, lying[surprise.in_hand]):
+        del things[surprise.in_hand]  # it lies a little beside where it is believed, rather than that others took it
     gone = _gone_things(surprise, place, things)
     left = [held for name, held in surprise.held_objects.items() if name not in gone]
     squares = frozenset(square for name in gone for square in things[name])
@@ -82,6 +84,15 @@ def _gone_things(surprise: Surprise, place: Position, things: Mapping[str, set[S
         if not left:
             return gone
         gone.append(min(left)[1])
+
+
+def _is_seen(surprise: Surprise, place: Position, squares: set[Square]) -> bool:
+    """Return whether the look shows that something stands on any of some squares."""
+    samples = surprise.frame.samples()
+    single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & (surprise.ranges[:, 0] > 0)
+    x, y = math.floor(place[0]), math.floor(place[1])
+    under = _squares_under(samples, x, y)
+    return any(not squares.isdisjoint(under[field]) for field in np.flatnonzero(single))
 
 
 def _new_squares(
