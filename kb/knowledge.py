@@ -10,6 +10,7 @@ State lies in three places: the localisation tracker (`Tracker`), the touches (`
 (`ObjectNames`). Two caches spare work: the completions of the last impression and the shapes measured so far.
 """
 
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,7 +48,7 @@ class Knowledge:
         self.rules = rules
         self.objects: tuple[Node, ...] = ()
         self._touches = Touches()
-        self._names = ObjectNames()
+        self._names = self._former_names = ObjectNames()  # on this map; on the one of before
         self._completions = NO_COMPLETION_SUMMARY
         self._measurer = ShapeMeasurer()
 
@@ -65,9 +66,11 @@ class Knowledge:
         if isinstance(command, Grasp):
             self._grasp(command.direction)
         accommodated = self.tracker.accommodate(command, impression)
+        if accommodated.explanation.how == "lost":
+            return self._begin_elsewhere(command, impression)
         if self.memory.lost and self.memory.in_hand is None:
             return self.begin_anew(impression, lost=True)
-        return self._update(impression, accommodated)
+        return self._update(impression, self._recognised(command) or accommodated)
 
     def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodation]:
         """Forget all but the track, and begin a new map with the newest impression."""
@@ -76,6 +79,25 @@ class Knowledge:
         woken = self.tracker.wake(impression)
         woken = woken._replace(explanation=woken.explanation._replace(how="lost" if lost else "anew"))
         return self._update(impression, woken)
+
+    def _begin_elsewhere(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodation]:
+        """Begin a new map with the newest impression, and keep the old one: others put the robot somewhere."""
+        if self.memory.former is None:
+            self._former_names = deepcopy(self._names)
+        self.tracker = self.tracker.elsewhere()
+        self._names.forget()
+        woken = self.tracker.wake(impression)
+        woken = woken._replace(explanation=woken.explanation._replace(how="lost"))
+        return self._update(impression, self._recognised(command) or woken)
+
+    def _recognised(self, command: Command) -> Accommodation | None:
+        """Go on with the map of before if what was seen since fits at one place of it; else return None."""
+        accommodated = self.tracker.recognise(command)
+        if accommodated is not None:
+            self._names = self._former_names.counted(self._names)
+            self._touches.forget_squares()
+            self._completions = NO_COMPLETION_SUMMARY
+        return accommodated
 
     def _grasp(self, direction: str) -> None:
         """Believe that an object is in hand, if one of known outline is, or is felt, on the adjacent square."""
@@ -89,6 +111,12 @@ class Knowledge:
         """Return the world model after an impression that localisation has taken in already."""
         if accommodated.explanation.remaps:  # all squares are those of another frame now
             self._touches.forget_squares()
+            self._completions = NO_COMPLETION_SUMMARY
+        if accommodated.explanation.change is not None:  # others changed what is there
+            change = accommodated.explanation.change
+            self._touches.forget(change.squares)
+            gone = (node for node in self.objects if node.name in change.gone)
+            self._names.miss({node.name: len(node.patch.squares()) for node in gone})
             self._completions = NO_COMPLETION_SUMMARY
         self._feel(impression)
         view = self._map()
@@ -181,4 +209,7 @@ class Knowledge:
             model, patch = lay_upon(model, load)
             objects += (held_node(load, patch, int(model.labels.max())),)
         self.objects = tuple(sorted(objects, key=lambda node: int(node.name[1:])))
-        return replace(model, objects=self.objects)
+        self.tracker.keep_things(
+            {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}
+        )
+        return replace(model, objects=self.objects, missing=self._names.missing)

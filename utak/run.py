@@ -100,6 +100,7 @@ class Run:
         pull: bool = True,
         rules: tuple[Path | str, ...] | list[Path | str] = (),
         mind: Callable[[], Mind] | None = None,
+        disturb: Path | str | None = None,
     ) -> None:
         """Let the robot wake in a scenario.
 
@@ -121,18 +122,22 @@ class Run:
             Files with rules that are added to the robot's own, as `--kb`.
         mind : callable, optional
             A class derived from `Mind`, or a function that returns a new mind; None for the robot's own.
+        disturb : Path or str, optional
+            A file that states what others do meanwhile, as `--disturb` (docs/files.md); None for nothing.
 
         Raises
         ------
         ValueError
             An option is out of its range.
         BadInputError
-            Rules, or files of the folder, have errors.
+            Rules, disturbances, or files of the folder, have errors.
         CannotOpenError
-            A file with rules, or the folder, cannot be read.
+            A file with rules, that of disturbances, or the folder, cannot be read.
         """
         if not isinstance(scenario, Scenario):
             scenario = Scenario.read(scenario)
+        if disturb is not None:
+            scenario = scenario.disturbed(disturb)
         files = kb_files_named([str(file) for file in rules])
         settings = Settings(int(seed), float(noise), paths, max_steps, files, pull)
         _check(settings)

@@ -2,7 +2,7 @@
 
 import textwrap
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
 from pathlib import Path
@@ -13,6 +13,7 @@ from utak.kb.task.task import read_task, start_facts_of
 from utak.markup import framed
 from utak.simulator.replay.drawing import table_svg
 from utak.simulator.scenario import scenario as files
+from utak.simulator.scenario.disturbances import read_disturbed, undisturbed
 from utak.simulator.scenario.expectation import read_expectations
 from utak.simulator.scenario.picture import draw
 from utak.simulator.sweep.contents import written
@@ -102,6 +103,29 @@ class Scenario:
         if expect is not None:
             texts["expect.lp"] = expect
         return Scenario("", _read_texts(texts, files.read_scenario))
+
+    def disturbed(self, path: Path | str) -> "Scenario":
+        """Return a scenario in which others do meanwhile what a file states.
+
+        Parameters
+        ----------
+        path : Path or str
+            The file, as for `utak run --disturb` (docs/files.md).
+
+        Returns
+        -------
+        Scenario
+            The scenario with these disturbances alone.
+
+        Raises
+        ------
+        CannotOpenError
+            The file cannot be read.
+        BadInputError
+            The file has errors; the message names every one with its place.
+        """
+        world = read_disturbed(undisturbed(self.content.world), path)
+        return Scenario(self.name, replace(self.content, world=world))
 
     def with_task(self, goal: str, start: str | None = None, expect: str | None = None) -> "Scenario":
         """Return a scenario with another task in the same world.

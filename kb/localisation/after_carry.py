@@ -1,5 +1,6 @@
 """Explanations of an observation after a push or a turn with an object in hand, and the object's state after it."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -33,6 +34,7 @@ from utak.kb.localisation.score import (
     propose_earlier_motions,
     propose_frame,
     residual_at,
+    with_others,
 )
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.patch import patch_of_polygon
@@ -43,6 +45,15 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn."""
+    judged = _explain_carry(state, surprise, held, motion)
+    end = predicted_outcome(state.place, held.polygon, motion)
+    carried = held.moved(end.polygon, held.slack, end.degrees, commanded=True)
+    after = replace(surprise, held_objects={**state.held_objects, held.name: carried})
+    return judged._replace(explanation=with_others(state, surprise, judged.explanation, [state.place], after, end))
+
+
+def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
+    """Return the explanation chosen for the observation after a push or a turn, if nothing else moved things."""
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
     budget = SearchBudget(state.search_count)
@@ -184,8 +195,14 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
     for name, held in state.held_objects.items():
         far = np.hypot(*(away - Rotate(held.turned, (0.0, 0.0)).points(away)).T)
         least = COMMAND_ROUNDING if state.beside_line and held.turned % 360 else 0.0
+        least = max(least, turned_astray(state, held.turned))
         held_objects[name] = replace(held, astray=float(far.max(initial=least)))
     return held_objects
+
+
+def turned_astray(state: TrackerState, degrees: float) -> float:
+    """Return how far a turn leads an object astray, in squares, whose centre is known as well as the robot's place."""
+    return 2 * state.place_doubt * abs(math.sin(math.radians(degrees / 2)))
 
 
 def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:

@@ -38,6 +38,7 @@ from utak.kb.localisation.score import (
     propose_frame,
     residual_at,
     with_chance,
+    with_others,
 )
 from utak.kb.localisation.state import TrackerState
 from utak.kb.perception.frame import Frame
@@ -61,7 +62,12 @@ class DeadReckoning:
 
 def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
     """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand."""
-    return _WalkExplainer(state, ranges, ends, command).judge()
+    judged = _WalkExplainer(state, ranges, ends, command).judge()
+    if command is None:
+        return judged
+    places = [*observation_places(ends.predicted), *ends.blocked]
+    surprise = state.surprise(command, ranges)
+    return judged._replace(explanation=with_others(state, surprise, judged.explanation, places))
 
 
 class _WalkExplainer:
@@ -71,7 +77,7 @@ class _WalkExplainer:
         """Compute the explanation that the walk went its whole way, and where it may have been blocked."""
         self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
         self._budget = SearchBudget(state.search_count)
-        ahead = [self._explanation("predicted", place, ends.predicted) for place in observation_places(ends.predicted)]
+        ahead = [self._explanation("predicted", place, ends.predicted) for place in state.places_near(ends.predicted)]
         self._whole = min(ahead, key=lambda one: one.residual)
         self._predicted = self._whole.place
         self._observation = Observation(ranges, state.frame.place_to_utak(*self._predicted))

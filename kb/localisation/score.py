@@ -4,9 +4,10 @@ Expensive proposals are made only when cheap ones leave something unexplained. k
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
 from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
 from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
@@ -18,11 +19,14 @@ from utak.kb.localisation.propose.earlier_motion import (
     reestimate_with_origin,
 )
 from utak.kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
+from utak.kb.localisation.propose.lifted import weighed_with_lifting
+from utak.kb.localisation.propose.others import propose_changes
 from utak.kb.localisation.state import TrackerState
 from utak.kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
 MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise
+MIN_UNEXPLAINED = 2  # fields of noise that cost more than an act of others: derived from kb/asp/accommodation.lp
 Found = TypeVar("Found")
 
 
@@ -173,3 +177,30 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
     known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]
     known += ["proven"] * (state.in_hand is not None and state.held_objects[state.in_hand].proven)
     return cheapest(explanations, [*known, *facts])
+
+
+def with_others(
+    state: TrackerState,
+    surprise: Surprise,
+    chosen: Explanation,
+    places: Sequence[Position],
+    carried: Surprise | None = None,
+    outcome: CarryOutcome | None = None,
+) -> Explanation:
+    """Return the choice between an explanation and what others may have done, if it explains badly."""
+    # places : where the look may have been made if others moved things, the likeliest first. carried : the surprise
+    # with what is in hand where a motion took it, and the outcome of that motion; others may have moved other things.
+    if not _explains_badly(state, chosen):
+        return chosen
+    explanations = [(surprise, one) for one in (chosen, *propose_changes(surprise, places))]
+    if carried is not None and outcome is not None:
+        beside = propose_changes(carried, [outcome.place])
+        others = [one for one in beside if one.change is not None and state.in_hand not in one.change.gone]
+        explanations += [(carried, one._replace(outcome=outcome)) for one in others]
+    return choose(state, weighed_with_lifting(surprise, explanations))
+
+
+def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:
+    """Return whether an explanation costs more than what others may have done, by kb/asp/accommodation.lp."""
+    far = explanation.how == "slipped" and not state.slipped and explanation.distance > 1
+    return explanation.unexplained >= MIN_UNEXPLAINED or far

@@ -14,10 +14,17 @@ from utak.kb.localisation.hypotheses.frames import (
     FieldRanges,
     FrameHypothesis,
     Observation,
+    OriginBox,
     Position,
     origin_leeway,
 )
-from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, squares_passed
+from utak.kb.localisation.hypotheses.recognition import Look, places_within
+from utak.kb.localisation.hypotheses.walk_outcomes import (
+    LINE_DISTANCE,
+    MotionHypothesis,
+    observation_places,
+    squares_passed,
+)
 from utak.kb.localisation.hypotheses.what_if import Surprise
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OPEN, OccupancyMap
@@ -60,6 +67,15 @@ class TrackerState:
     # The newest completions of the map in this frame (sampled maps that agree with all counts); None when none were
     # drawn
     completions: Completions | None = None
+    # The squares of things that were seen and never held, by name, map frame: whole things can be moved by others
+    things: Mapping[str, frozenset[Square]] = field(default_factory=dict)
+    place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)  # how far Utak may be from `place` since it was lifted: W, S, E, N
+    # By square that others changed, map frame: the number of the first observation since
+    changed_at: Mapping[Square, int] = field(default_factory=dict)
+    lifted_at: frozenset[int] = frozenset()  # the numbers of the observations before which it was put elsewhere
+    # What was believed before it was put where it recognised nothing yet, and what it saw since
+    former: "TrackerState | None" = None
+    looks: tuple[Look, ...] = ()
 
     def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
         """Return an observation that contradicts this state, with what of the state it is judged by."""
@@ -74,7 +90,12 @@ class TrackerState:
             self.in_hand,
             self.hypotheses,
             self.completions,
+            self.things,
         )
+
+    def places_near(self, place: Position) -> list[Position]:
+        """Return the places from which an observation may be made that ends a motion at `place`, one in each square."""
+        return places_within(place, self.place_error) if any(self.place_error) else list(observation_places(place))
 
     # -- pose and track --------------------------------------------------------------------------
 
@@ -99,13 +120,20 @@ class TrackerState:
     @property
     def passed(self) -> frozenset[Square]:
         """Return the squares through which the robot went on the present map: (column, row), map frame."""
-        track = self.track[len(self.been) :]
-        return frozenset(square for way in pairwise(track) for square in squares_passed(*way))
+        ways = enumerate(pairwise(self.track[len(self.been) :]), 1)
+        walked = ((n, square) for n, way in ways if n not in self.lifted_at for square in squares_passed(*way))
+        return frozenset(square for n, square in walked if n >= self.changed_at.get(square, 0))
 
     @property
     def leeway(self) -> tuple[float, float, float, float]:
         """Return how far the true origin of the frame may lie from the believed one: (west, south, east, north)."""
         return origin_leeway(self.frame, self.observations, self.hypotheses)
+
+    @property
+    def place_doubt(self) -> float:
+        """Return how far Utak may be from the believed place since it was lifted, in squares; 0 when it never was."""
+        west, south, east, north = self.place_error
+        return math.hypot(max(-west, east), max(-south, north))
 
     @property
     def off_middle(self) -> bool:

@@ -7,6 +7,7 @@ occupancy map. Each of its 160 fields counts as predicted, as explained (it show
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from utak.kb.body import Command, Impression, Move, Push, Release, Turn
@@ -17,11 +18,13 @@ from utak.kb.localisation.after_carry import (
     moved_object,
     objects_astray,
     refined_extent,
+    turned_astray,
 )
 from utak.kb.localisation.after_walk import DeadReckoning, explain_walk
 from utak.kb.localisation.field_account import Accommodation, account_for_fields
-from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
+from utak.kb.localisation.hypotheses.explanation import Explanation, TableChange
+from utak.kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, OriginBox, Position
+from utak.kb.localisation.hypotheses.recognition import narrowed, recognise
 from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     MotionHypothesis,
@@ -31,12 +34,14 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     snap_to_middle,
 )
 from utak.kb.localisation.hypotheses.what_if import command_motion
-from utak.kb.localisation.score import Judgement
+from utak.kb.localisation.propose.lifted import look_at
+from utak.kb.localisation.propose.others import forgetting
+from utak.kb.localisation.score import Judgement, residual_at
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of_squares
-from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
+from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square, held_or_moved, subtract_held_objects
 from utak.kb.perception.retina import count_ranges
 
 MAX_MOTIONS = 12  # last straight motions that are kept for re-estimation: bounds its time; tuned on random worlds
@@ -59,7 +64,50 @@ class Tracker:
         # the newest observation is left out of it, for it is made again.
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
-        return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been))
+        begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
+        return Tracker(replace(begun, former=state.former))
+
+    def elsewhere(self) -> "Tracker":
+        """Return a tracker of a robot that others put somewhere: it begins anew, and keeps what was believed before."""
+        # The newest observation fits nowhere, and was not integrated.
+        state = self.state
+        been = (*state.been, *(observation.place for observation in state.observations))
+        begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
+        return Tracker(replace(begun, former=state.former or state))
+
+    def recognise(self, command: Command) -> Accommodation | None:
+        """Look for the newest observations on the map of before; go on with that if they fit at one place of it."""
+        state, former = self.state, self.state.former
+        if former is None:
+            return None
+        first, newest = state.observations[0].place, state.observations[-1]
+        away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
+        self.state = state = replace(
+            state, looks=(*state.looks, look_at(former.surprise(command, newest.ranges), away))
+        )
+        found = None if state.held_objects else recognise(former.occupancy, state.looks)
+        if found is None:
+            return None
+        self.state = former
+        self._put_elsewhere(found.error)
+        for look, observation in zip(state.looks, state.observations, strict=True):
+            place = found.place[0] + look.away[0] - away[0], found.place[1] + look.away[1] - away[1]
+            clashes = residual_at(self.state, observation.ranges, place, self.state.held_objects.values())
+            lifted = Explanation("lifted", place, former.frame, clashes, 1.0)
+            accommodated = self._integrate(lifted, observation.ranges)
+        return accommodated
+
+    def _put_elsewhere(self, error: OriginBox) -> None:
+        """Believe in `state` that others put the robot elsewhere: what it held is let go of."""
+        state = self.state
+        self.state = replace(
+            state,
+            in_hand=None,
+            motions=(),
+            hypotheses=tuple(h for h in state.hypotheses if h.contains(state.frame)) or state.hypotheses,
+            place_error=error,
+            lifted_at=state.lifted_at | {len(state.observations)},
+        )
 
     def wake(self, impression: Impression) -> Accommodation:
         """Explain and integrate the first impression; `state` is replaced."""
@@ -98,6 +146,10 @@ class Tracker:
         left = [held for held in state.held_objects.values() if held.name != name]
         self.state = _remapped(state, remap(state.frame, state.frame, state.observations, left))
 
+    def keep_things(self, things: Mapping[str, frozenset[Square]]) -> None:
+        """Keep the squares of the things seen in `state`: what others may have moved is proposed by them."""
+        self.state = replace(self.state, things=things)
+
     def keep_completions(self, completions: Completions | None) -> None:
         """Keep the newest completions of the map in `state`; the chance of a contact is estimated by them."""
         self.state = replace(self.state, completions=completions)
@@ -110,14 +162,37 @@ class Tracker:
             self._remember(command)
         judged = explain_walk(self.state, ranges, walk, command)
         explanation = judged.explanation
+        if explanation.how == "lost":
+            return self._unexplained(explanation, ranges)
         self._learn(judged)
         self._apply(explanation)
+        explanation = self._narrow(explanation, walk.predicted, ranges)
         self._count_confirmations(explanation)
         self._note_motion(explanation)
         if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
             squares = explanation.contact_squares or {entered_square(explanation.place, walk.predicted)}
             self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
         return self._integrate(explanation, ranges)
+
+    def _narrow(self, explanation: Explanation, predicted: Position, ranges: FieldRanges) -> Explanation:
+        """Narrow in `state` where the robot may be since it was lifted, by a look; return where the look was made."""
+        state = self.state
+        if not any(state.place_error) or explanation.how in ("lifted", "misled", "turned"):
+            return explanation
+        centre = predicted if explanation.how in ("predicted", "changed") else explanation.place
+        near, held = state.places_near(centre), state.held_objects.values()
+        clashes = [residual_at(state, ranges, place, held) for place in near]
+        fitting = [place for place, many in zip(near, clashes, strict=True) if many == min(clashes)]
+        place, error = narrowed(centre, state.place_error, fitting)
+        self.state = replace(state, place_error=error)
+        return explanation._replace(place=place)
+
+    def _unexplained(self, explanation: Explanation, ranges: FieldRanges) -> Accommodation:
+        """Return the account of an observation that is not integrated, since the robot does not know where it is."""
+        x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
+        samples, occupancy = self.state.frame.samples(), self.state.occupancy
+        left, counts = subtract_held_objects(samples, ranges, x, y, self.state.held_objects.values())
+        return Accommodation(explanation, account_for_fields(occupancy, left, ranges, counts, (x, y)))
 
     def _count_confirmations(self, explanation: Explanation) -> None:
         """Count a predicted observation as a confirmation in `state`."""
@@ -142,15 +217,18 @@ class Tracker:
         """Explain and integrate an observation after a push or a turn of the held object `name`."""
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
-        if isinstance(command, Turn) and state.beside_line:
-            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING))
+        if isinstance(command, Turn) and (state.beside_line or state.place_doubt):
+            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
             self.update_object(held)
         judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
+        if judged.explanation.how == "lost":
+            return self._unexplained(judged.explanation, ranges)
         if isinstance(command, Push):
             self._remember(command, name)
         self._learn(judged)
         self._apply(judged.explanation)
-        self._move_object(name, judged.explanation, command, ranges)
+        if name in self.state.held_objects and self.state.in_hand == name:
+            self._move_object(name, judged.explanation, command, ranges)
         return self._integrate(judged.explanation, ranges)
 
     def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
@@ -176,6 +254,12 @@ class Tracker:
 
     def _apply(self, chosen: Explanation) -> None:
         """Believe in `state` what an explanation says of the frame and of earlier motions."""
+        if chosen.change is not None:
+            self._forget_changed(chosen.change)
+            return
+        if chosen.how == "lifted":
+            self._put_elsewhere(chosen.place_error)
+            return
         state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
             state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
@@ -195,6 +279,25 @@ class Tracker:
         else:
             under = RemapCache(state.frame, state.occupancy, state.observations, held_objects).remapped(chosen.frame)
         self.state = _remapped(replace(state, frame=chosen.frame), under)
+
+    def _forget_changed(self, change: TableChange) -> None:
+        """Forget in `state` what earlier observations say of squares that others changed, and the things that left."""
+        state, change_number = self.state, len(self.state.observations)
+        gone = [held for held in state.held_objects.values() if held.name in change.gone]
+        observations = forgetting(state.frame, state.observations, change, gone)
+        held_objects = {name: held for name, held in state.held_objects.items() if name not in change.gone}
+        state.occupancy.withdraw_patch(patch_of_squares(change.squares))
+        self.state = replace(
+            state,
+            observations=observations,
+            held_objects=held_objects,
+            in_hand=None if state.in_hand in change.gone else state.in_hand,
+            motions=tuple(motion for motion in state.motions if motion.number >= change_number),
+            blocked_squares=state.blocked_squares - change.squares,
+            suspected_squares=state.suspected_squares - change.squares,
+            completions=None,
+            changed_at={**state.changed_at, **dict.fromkeys(change.squares, change_number)},
+        )
 
     def _learn(self, judged: Judgement) -> None:
         """Keep in `state` what was learnt while an explanation was chosen: searches, hypotheses, ends of the motion."""

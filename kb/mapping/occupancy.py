@@ -163,6 +163,19 @@ class OccupancyMap:
         state[where[single, entry]] = np.where(ranges[single, 0] > 0, OCCUPIED, FREE)
         return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
+    def newly_occupied(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> set[Square]:
+        """Return the squares that an impression shows to be occupied, though counts of earlier ones forbid it."""
+        self.make_room(x, y)
+        where, state = self._under(samples, x, y), self.state.ravel().copy()
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & (ranges[:, 0] > 0)
+        shown = where[single, samples.weight[single].argmax(1)]
+        state[shown] = OCCUPIED
+        wrong = np.zeros(len(self._low), np.bool_)
+        misfits(state, *self._fields, wrong)
+        against = np.intersect1d(self._where[wrong][self._weight[wrong] > 0], shown)
+        rows, columns = np.divmod(against, self.state.shape[1])
+        return set(zip((columns + self.west).tolist(), (rows + self.south).tolist(), strict=True))
+
     def observe(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Add one impression to the map."""
         arrays = (samples.columns, samples.rows, samples.weight, ranges)
@@ -195,6 +208,10 @@ class OccupancyMap:
         self.settled_by.ravel()[squares] = -1
         touched = doubtful[self._where] & (self._weight > 0)
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
+
+    def withdraw_patch(self, patch: tuple[int, int, Bools]) -> None:
+        """Forget what was settled of the squares of a patch; see `withdraw`."""
+        self.withdraw(np.flatnonzero(self.squares(*patch)).astype(np.int32))
 
     def stand(self, x: int, y: int, number: int) -> None:
         """Settle the square on which the robot woke as free, unless it was settled before: its own image hides it."""

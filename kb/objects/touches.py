@@ -3,7 +3,7 @@
 State that lasts from one impression to the next.
 """
 
-from collections.abc import Container
+from collections.abc import Container, Iterable
 
 from utak.geometry.kernels.arrays import Square
 from utak.kb.body import DIRECTIONS
@@ -21,6 +21,11 @@ class Touches:
     def forget_squares(self) -> None:
         """Forget the colours of all squares: they are squares of a frame that is no longer believed."""
         self.colours.clear()
+
+    def forget(self, squares: Iterable[Square]) -> None:
+        """Forget the colours of some squares: others changed what is there."""
+        for square in squares:
+            self.colours.pop(square, None)
 
     def feel(self, touch: tuple[str | None, ...], frame: Frame, square: Square, held: Container[Square]) -> None:
         """Take in the touches of an impression: `current` becomes them, and `colours` is kept up to date."""

@@ -91,6 +91,7 @@ class WorldModel:
     kinds: Kinds  # What each region is taken for
     objects: tuple[Node, ...]  # The isolated objects, and what may be one, by number
     held: str | None = None  # The name of the object in hand
+    missing: tuple[str, ...] = ()  # The names of things that are no longer where they lay, and were not seen since
     looked_from: frozenset[Square] = frozenset()  # The squares on which an impression was received, map frame
     barred: frozenset[Square] = frozenset()  # Squares that stopped a motion, or probably did, map frame
     spread: float = 0.0  # Radians by which the true orientation of the frame may differ from the believed one

@@ -2,8 +2,8 @@
 
 `impossible` is claimed only of what holds under every completion of what is open. A wall that was only seen may be a
 thing that can be moved; the floor may go on where nothing was seen; a thing that was never moved may be more than one
-thing; an opening that fills no whole square looks like wall. While one of these is open, the verdict is `possible_if`,
-and its reason names the fact.
+thing; an opening that fills no whole square looks like wall; a thing that others moved lies somewhere. While one of
+these is open, the verdict is `possible_if`, and its reason names the fact.
 """
 
 import math
@@ -37,12 +37,14 @@ def proof_if_not_found(model: WorldModel, immovable: bool = False) -> tuple[str,
     # () for nothing.
     proved = model.view.sure and orientation_is_settled(model) if immovable else not model.shaken
     fact = "what fits did not move when it was pushed" if immovable else "nothing that was seen fits"
-    return (fact, NOTHING_LEFT) if proved else ()
+    return (fact, NOTHING_LEFT) if proved and not model.missing else ()
 
 
 def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_WALLS) -> str:
     """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none."""
     model, reached = situation.model, situation.cost_maps.floor
+    if model.missing:
+        return f"{model.missing[0]}, which is no longer where it lay, lies where the robot has not looked since"
     walls = walls_in_question(model, reached, scope).values()
     wall = _nearest_square(np.any(list(walls), axis=0), near)
     if wall is not None:

@@ -31,6 +31,7 @@ class Presser:
         self._corner: XY = (0.0, 0.0)  # in squares, map frame
         self._left: list[Translate] = []
         self._last: tuple[Translate, XY] | None = None  # the last press, and the object's middle before it
+        self._is_new = False  # whether nothing was seen yet of the last press
 
     def forget(self) -> None:
         """Forget all presses: the object was pushed otherwise, or a press was not stopped."""
@@ -41,7 +42,9 @@ class Presser:
         if self._of != (str(goal), node.name):
             return False
         gone_on = self._last is not None and not _is_stopped(*self._last, node)
-        lost = self._left and situation.model.held != node.name
+        # Out of the hand after a press, it was not pressed: others took it, or put the robot elsewhere.
+        lost = (self._left or self._is_new) and situation.model.held != node.name
+        self._is_new = False
         if gone_on or lost or math.dist(self._corner, _corner_of(goal, situation)) > CORNER_SHIFT:
             self.forget()
         return self._of is not None
@@ -57,7 +60,7 @@ class Presser:
         if not self._left or self._of is None or self._of[1] != node.name:
             return None
         push = self._left.pop(0)
-        self._last = push, (node.polygon.centroid.x, node.polygon.centroid.y)
+        self._last, self._is_new = (push, (node.polygon.centroid.x, node.polygon.centroid.y)), True
         why = f"{node.name} is pressed against the wall, to be sure that it is there"
         return unplanned_act(push, why, model)
 
@@ -69,7 +72,8 @@ def _corner_of(goal: Fact, situation: Situation) -> XY:
 
 
 def _is_stopped(push: Translate, before: XY, node: Node) -> bool:
-    """Return whether a push of an object fell short by more than STOPPED_SHORT squares."""
+    """Return whether a push of an object fell short by more than STOPPED_SHORT squares, and it lies no further away."""
     moved = np.subtract((node.polygon.centroid.x, node.polygon.centroid.y), before)
     length = math.hypot(push.dx, push.dy)
-    return bool(moved @ (push.dx, push.dy) / length < length - STOPPED_SHORT)
+    near = math.hypot(*moved) <= length + STOPPED_SHORT
+    return bool(near and moved @ (push.dx, push.dy) / length < length - STOPPED_SHORT)

@@ -134,6 +134,7 @@ def at(what: str) -> Argument:
 RUN = (
     value("scenario", "SCENARIO", "a scenario folder"),
     *SETTINGS,
+    value("--disturb", "FILE", "what others do meanwhile: facts move, lift, appear, vanish, each with a step"),
     value("--log", "EP.jsonl", "write the episode to this file as it happens; - is the standard output"),
     value("--html", "FILE", "write the whole run as a page that plays it in any browser"),
     value("--seconds", "S", "end a run that takes longer, also within a step", RUN_SECONDS),

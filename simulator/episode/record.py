@@ -17,9 +17,10 @@ from utak.kb.task.task import Task, task_from_texts
 from utak.kb.world.facts import binding_facts
 from utak.simulator.episode.episode import EpisodeLine
 from utak.simulator.episode.schema import EPISODE_VERSION
+from utak.simulator.scenario.disturbances import stated_disturbances
 from utak.simulator.scenario.scenario import Scenario
 from utak.simulator.scenario.settings import SETTING_NAMES, Settings
-from utak.simulator.world.world import Thing, World
+from utak.simulator.world.world import Thing, World, outer_ring
 
 
 def action_entry(command: Command | None) -> EpisodeLine | None:
@@ -36,6 +37,17 @@ def motion_entry(motion: Motion | None) -> EpisodeLine | None:
     if isinstance(motion, Translate):
         return {"translate": [motion.dx, motion.dy]}
     return {"rotate": motion.degrees, "about": list(motion.about)}
+
+
+def disturbance_entries(disturbed: Mapping[str, Any], refused: Mapping[str, str]) -> EpisodeLine:
+    """Return what others did and could not do before a command, as its line states it; {} for nothing."""
+    entries: EpisodeLine = {}
+    if disturbed:
+        entries["disturbed"] = {
+            name: list(place) if name == "utak" else [list(point) for point in outer_ring(place)]
+            for name, place in disturbed.items()
+        }
+    return entries | ({"refused": dict(refused)} if refused else {})
 
 
 def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
@@ -76,12 +88,14 @@ def _world_entry(world: World) -> EpisodeLine:
     def entry(thing: Thing) -> EpisodeLine:
         return {"colour": thing.colour, "rings": _rings(thing.polygon)}
 
+    disturbances = [act.fact for act in world.disturbances]
     return {
         "table": [world.width, world.height],
         "heading": world.heading,
         "verge": [_rings(part) for part in getattr(world.verge, "geoms", [world.verge]) if not part.is_empty],
         "fixed": {thing.name: entry(thing) for thing in world.fixed},
         "movable": {thing.name: entry(thing) for thing in world.movable},
+        **({"disturbances": disturbances} if disturbances else {}),
     }
 
 
@@ -98,7 +112,8 @@ def recorded_world(head: EpisodeLine) -> World:
     width, height = entry["table"]
     verge = shapely.MultiPolygon([shapely.Polygon(rings[0], rings[1:]) for rings in entry["verge"]])
     movable, fixed = (tuple(_thing(*item) for item in entry[kind].items()) for kind in ("movable", "fixed"))
-    return World(int(width), int(height), verge, movable, fixed, (0.0, 0.0), int(entry["heading"]))
+    world = World(int(width), int(height), verge, movable, fixed, (0.0, 0.0), int(entry["heading"]))
+    return replace(world, disturbances=stated_disturbances(fact_lines(entry.get("disturbances", ()))))
 
 
 def world_at(head: EpisodeLine, line: EpisodeLine) -> World:

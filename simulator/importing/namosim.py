@@ -19,7 +19,8 @@ from utak.simulator.importing.imported import COLOUR_LETTERS, Imported, ImportOp
 from utak.simulator.importing.svg_outlines import DrawnShape, SvgError, SvgPicture, filled_area, matrix, numbers_in
 from utak.simulator.importing.text_file import read_raw, text_source
 from utak.simulator.importing.xml_tree import XmlElement, parse_xml, xml_error
-from utak.simulator.scenario.worldfile import MAX_TOUCHING_AREA, MIN_THING_AREA
+from utak.simulator.scenario.worldfile import MIN_THING_AREA
+from utak.simulator.world.placing import MAX_TOUCHING_AREA
 
 CURVE_TOLERANCE = 0.02  # squares between a curve and its chords; a convention
 MAX_CUT_AREA = 0.05  # square squares by which a wall may reach into an obstacle; more is an error; a convention

@@ -7,7 +7,7 @@ from utak.kb.world.stated_plan import stated_plan
 from utak.simulator.episode.episode import Episode
 from utak.simulator.replay.changes import changes
 from utak.simulator.run.story import recorded_story
-from utak.simulator.terminal.action_in_words import end_in_words, step_in_words
+from utak.simulator.terminal.action_in_words import end_in_words, others_in_words, step_in_words
 from utak.simulator.terminal.streams import escape_controls, one_line
 
 MAX_LISTED_FACTS = 40  # facts of one kind of change that a step lists; a convention
@@ -23,6 +23,7 @@ def transcript(name: str, episode: Episode) -> Iterator[str]:
         head = step_in_words(line)
         plan = _plan(facts)
         told = [f"plan as before: {plan[0]}"] if plan and plan == planned else plan  # or that there is none, as before
+        head = "\n".join([head, *others_in_words(line)])
         yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *told, *_changes(before, facts), "", ""])
         before, planned = facts, plan
         if not story.advance():

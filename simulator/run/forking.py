@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 from utak.kb.language.diagnostics import BadInputError
 from utak.simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, encode
-from utak.simulator.episode.record import header, recorded_task, rules_sum
+from utak.simulator.episode.record import fact_lines, header, recorded_task, rules_sum
 from utak.simulator.run.robots import make_robot, warm_for
 from utak.simulator.run.session import Session
+from utak.simulator.scenario.disturbances import stated_disturbances
 from utak.simulator.scenario.scenario import Scenario
 from utak.simulator.scenario.settings import Settings
 
@@ -38,7 +39,7 @@ def recorded_stages(
         last = len(episode.steps) - 1
         what = f"there is no step {step}: the last is {last}" if episode.steps else "the episode has no step"
         raise BadInputError.at(name, what)
-    if encode(head["world"]) != encode(header(scenario, Settings())["world"]):
+    if _world_until(head["world"], step) != _world_until(header(scenario, Settings())["world"], step):
         raise BadInputError.at(name, "the episode is of another world than the scenario's", "a fork keeps the world")
     steps = [change.get("step") for change in head.get("changes", ())]
     changed = min((at if isinstance(at, int) else 0 for at in steps), default=None)
@@ -56,6 +57,13 @@ def recorded_stages(
         )
         for entry in entries
     ]
+
+
+def _world_until(entry: EpisodeLine, step: int | None) -> tuple[str, list[str]]:
+    """Return the world of a header as text, and what others did in it up to a step; for None all that they do."""
+    stated = stated_disturbances(fact_lines(entry.get("disturbances", ())))
+    world = {key: value for key, value in entry.items() if key != "disturbances"}
+    return encode(world), [act.fact for act in stated if step is None or act.step <= step]
 
 
 def options_at(head: EpisodeLine, step: int | None) -> EpisodeLine:

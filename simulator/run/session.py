@@ -10,7 +10,7 @@ from utak.kb.body import Body, Command
 from utak.kb.task.task import Task
 from utak.planner.decision import StepReport, TaskVerdict, Verdict
 from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
-from utak.simulator.episode.record import action_entry, header, motion_entry
+from utak.simulator.episode.record import action_entry, disturbance_entries, header, motion_entry
 from utak.simulator.run.embodiment import Embodiment
 from utak.simulator.run.time_limit import TimeLimit, TimeOver
 from utak.simulator.scenario.expectation import Snapshot, shortfalls, should_fail
@@ -194,6 +194,7 @@ class Session:
             "step": number,
             "action": action_entry(report.command),
             "motion": motion_entry(table.motion),
+            **disturbance_entries(table.disturbed, table.refused),
             "utak": list(table.utak),
             "held": table.held,
             "objects": {name: [list(point) for point in outer_ring(shape)] for name, shape in table.polygons.items()},

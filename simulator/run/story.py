@@ -31,7 +31,7 @@ from utak.simulator.scenario.settings import Settings
 
 MAX_KEPT_SESSIONS = 12  # copies of the run that are kept for going on from earlier steps; a convention
 # What happened in the world at a step: the same in a repetition of the same run.
-WORLD_KEYS = ("step", "action", "motion", "utak", "held", "objects", "retina", "touch")
+WORLD_KEYS = ("step", "action", "motion", "disturbed", "utak", "held", "objects", "retina", "touch")
 
 
 class StoryMoment(NamedTuple):

@@ -14,15 +14,11 @@ from utak.kb.language.source_text import Source, read_source
 from utak.kb.language.terms import Fact
 from utak.kb.language.vocabulary import WORLD_VOCABULARY, check_facts
 from utak.kb.language.wkt import parse_wkt
+from utak.simulator.world.placing import MAX_TOUCHING_AREA, touches_floor
 from utak.simulator.world.world import VERGE_COLOUR, Thing, World
 
-MAX_TOUCHING_AREA = 1e-9  # square squares; shapes with a smaller common area only touch (docs/files.md)
 MIN_THING_AREA = 1e-4  # square squares; a smaller thing is taken for a mistake; a convention
 RESERVED_THING_NAMES = ("utak", "verge")  # names that objects cannot have
-# Squares; a narrower gap between shapes is no floor, because the physics does not resolve it (docs/files.md).
-MIN_GAP_WIDTH = 1e-6
-# Squares; shrinking and cutting corners moves the edge of the floor by less than this from its true place.
-MAX_DISTANCE_TO_FLOOR = 1e-4
 
 
 class _Stated(NamedTuple):
@@ -171,12 +167,3 @@ def _bad_place(
     if not inside and not touches_floor(here, [one.shape for one in stated], width, height):
         what = f"Utak stands where no floor is, at ({here.x:g}, {here.y:g})"
         yield source.problem(span, what, "the robot stands on floor, or on its edge")
-
-
-def touches_floor(here: Any, shapes: Sequence[Any], width: int, height: int) -> bool:
-    """Return whether a point lies on the floor or on its edge; gaps narrower than `MIN_GAP_WIDTH` are no floor."""
-    # Only shapes within one square of the point are examined, so that the test is fast on a large table.
-    about = shapely.box(0, 0, width, height).intersection(shapely.box(*here.buffer(1.0).bounds))
-    floor = about.difference(shapely.union_all([shape.intersection(about) for shape in shapes]))
-    wide = floor.buffer(-MIN_GAP_WIDTH / 2, join_style="mitre")
-    return not wide.is_empty and bool(wide.distance(here) <= MAX_DISTANCE_TO_FLOOR)

@@ -24,6 +24,13 @@ def step_in_words(line: dict[str, Any]) -> str:
     return f"step {line['step']}: {describe(line['action'])}: {one_line(str(line['why']))}"
 
 
+def others_in_words(line: dict[str, Any]) -> list[str]:
+    """Return what others did before the command of a step, and what they could not do; a line for each kind."""
+    done = ", ".join(line.get("disturbed", ()))
+    told = [f"before it others put elsewhere: {done}"] if done else []
+    return told + [f"not disturbed: {one_line(fact)}: {one_line(why)}" for fact, why in line.get("refused", {}).items()]
+
+
 def end_in_words(result: dict[str, Any]) -> str:
     """Return the end of a run in one line."""
     return f"{result['verdict']} after {result['steps']} steps: {one_line(str(result['reason']))}"

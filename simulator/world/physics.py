@@ -1,7 +1,7 @@
 """TABLETOP, the physics: what lies on the table, where Utak is, and how the five commands change that.
 
 Utak is a point. A held object moves with it as one rigid body. A motion ends exactly at the first contact; only Utak's
-hand moves things.
+hand moves things, and what others do, as the world states it, between two commands.
 """
 
 import math
@@ -14,9 +14,10 @@ from utak.geometry.kernels.arrays import Floats
 from utak.geometry.motion.first_contact import MIN_EDGE_LENGTH, ContactBody, Obstacles, obstacle_part
 from utak.geometry.motion.se2 import Motion, Rotate, Translate, direction
 from utak.geometry.raster.rasterize import outline_edges
+from utak.simulator.world.placing import robot_misplaced, standing, thing_misplaced
 from utak.simulator.world.senses import ImpressionCodes, Senses, felt_colours, gray_levels
 from utak.simulator.world.table import Table, TableColours
-from utak.simulator.world.world import World
+from utak.simulator.world.world import Disturbance, World
 
 TABLE_EDGE_WIDTH = 1.0  # squares; any width above 0 stops motions, because contacts are exact
 
@@ -49,6 +50,10 @@ class Tabletop:
         self._obstacles = dict(self._obstacles_at_start)
         self._moved: set[str] = set()  # the names of things that are not known to lie as at the start
         self._carried: CarriedThing | None = None  # the held thing where it lies now; None until it moves
+        self._commands = 0
+        # What others did before the newest command, by the name of what they put elsewhere, and what they could not do.
+        self.disturbed: dict[str, Any] = {}
+        self.refused: dict[str, str] = {}  # why not, in words, by the fact that states it
 
     def disturb(self, noise: float, seed: int | None) -> None:
         """Disturb motions by another noise from now on."""
@@ -60,19 +65,19 @@ class Tabletop:
 
     def move(self, east: float, north: float) -> None:
         """Walk straight by (east, north) squares in Utak's frame; no effect while an object is held."""
-        self.motion = None
+        self._begin_command()
         if self.held is None:
             self._move_until_contact(self._disturbed_translation(east, north))
 
     def push(self, east: float, north: float) -> None:
         """Walk straight by (east, north) squares in Utak's frame, with the held object; no effect without one."""
-        self.motion = None
+        self._begin_command()
         if self.held is not None:
             self._move_until_contact(self._disturbed_translation(east, north))
 
     def turn(self, degrees: float) -> None:
         """Turn the held object about Utak by `degrees`, counter-clockwise positive; no effect when nothing is held."""
-        self.motion = None
+        self._begin_command()
         if self.held is None:
             return
         _require_finite(degrees)
@@ -82,7 +87,7 @@ class Tabletop:
 
     def grasp(self, direction: str) -> None:
         """Grasp the movable thing on an adjacent square; no effect while an object is held."""
-        self.motion = None
+        self._begin_command()
         square = self._senses.adjacent(self.utak, direction)
         if self.held is not None:
             return
@@ -92,9 +97,8 @@ class Tabletop:
 
     def release(self) -> None:
         """Release the held object."""
-        self.motion = None
-        self.held = None
-        self._carried = None
+        self._begin_command()
+        self._let_go()
 
     def look(self) -> tuple[tuple[int, ...], tuple[str | None, ...]]:
         """Return the impression at Utak's place: 160 gray levels and 8 touches. Changes nothing."""
@@ -114,6 +118,47 @@ class Tabletop:
     def colours(self) -> TableColours:
         """The colours of the table's squares, as `Table.colours`; Utak is not in it."""
         return self._table.colours
+
+    def _begin_command(self) -> None:
+        """Count a command; before it is carried out, others do what the world states for it."""
+        self.motion = None
+        self._commands += 1
+        self.disturbed, self.refused = {}, {}
+        for other in self.world.disturbances:
+            if other.step == self._commands:
+                self._be_disturbed(other)
+
+    def _be_disturbed(self, other: Disturbance) -> None:
+        """Put a thing or Utak elsewhere, unless something is in the way there."""
+        if other.name == "utak":
+            hindrance = robot_misplaced(self.world, other.place, [*standing(self.world), *self.polygons.items()])
+        else:
+            outline = other.outline(self.polygons[other.name], self.world.width)
+            hindrance = "" if other.place is None else self._thing_hindered(other.name, outline)
+        if hindrance:
+            self.refused[other.fact] = hindrance
+            return
+        if other.name in ("utak", self.held):
+            self._let_go()
+        if other.name == "utak":
+            self.utak = self.disturbed["utak"] = (float(other.place.x), float(other.place.y))
+            return
+        self.polygons[other.name] = self.disturbed[other.name] = outline
+        self._table.update(other.name, outline_edges(outline))
+        self._parts.pop(other.name, None)
+        self._moved.add(other.name)
+        self._obstacles = {held: around for held, around in self._obstacles.items() if held == other.name}
+
+    def _thing_hindered(self, name: str, outline: Any) -> str:
+        """Return what is in the way of a thing that others put elsewhere, in words; "" for nothing."""
+        lying = [(other, polygon) for other, polygon in self.polygons.items() if other != name]
+        covers = outline.contains(shapely.Point(self.utak))
+        hindrance = thing_misplaced(self.world, name, outline, [*standing(self.world), *lying])
+        return hindrance or (f"{name} would lie over Utak" if covers else "")
+
+    def _let_go(self) -> None:
+        self.held = None
+        self._carried = None
 
     def _disturbed_translation(self, east: float, north: float) -> Translate:
         """Return a translation in the table frame, disturbed by noise; east and north are in Utak's frame."""

@@ -10,5 +10,6 @@ reestimation  other ends of a remembered walk, when observations contradict each
 carry_outcomes  what a push or a turn may have led to
 contacts  contact hypotheses: what may have blocked a held object, and where
 what_if  evaluation of a frame and an outcome against all observations, once objects were moved
+recognition  where on a known map a look fits, once the robot was put elsewhere
 explanation  an explanation of an observation, and the choice by kb/asp/accommodation.lp
 """

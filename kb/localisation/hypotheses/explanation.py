@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
-from utak.kb.localisation.hypotheses.frames import FrameHypothesis, Position
+from utak.kb.localisation.hypotheses.frames import FrameHypothesis, OriginBox, Position
 from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk
 from utak.kb.objects.held_object import HeldObject, Square
 from utak.kb.perception.frame import CENTRE, Frame
@@ -18,6 +18,14 @@ CONTRADICTION_WEIGHT = 2  # fields that a contradiction of observations counts a
 MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
 
 
+class TableChange(NamedTuple):
+    """A change of the table by others between two observations."""
+
+    gone: tuple[str, ...]  # the names of the things that are no longer where they lay, sorted
+    squares: frozenset[Square]  # where something changed, map frame: earlier observations say nothing of these
+    new: int  # the number of things that stand where floor was
+
+
 class Explanation(NamedTuple):
     """An explanation of an observation."""
 
@@ -25,13 +33,14 @@ class Explanation(NamedTuple):
     # slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or this
     # one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held object is
     # smaller or larger than it seemed), parted (as commanded, but the held object is only a part of what seemed one
-    # thing); or lost or anew after a new beginning.
+    # thing), changed (others moved things), lifted (others put the robot elsewhere), lost (it is not known where);
+    # or lost or anew after a new beginning.
     how: str
     place: Position  # where the observation was made, (x, y) in squares, map frame of `frame`
     frame: Frame  # the frame by this explanation
     residual: int  # number of fields that it leaves unexplained (they contradict the map or an object by it); 0 is best
     # From the predicted end of the motion, in squares; for misled by how far ends are corrected in all, for larger how
-    # far the object goes on beyond what was seen
+    # far the object goes on beyond what was seen; for changed how many things others moved, took or brought
     distance: float
     outcome: CarryOutcome | None = None  # of the motion of the object in hand; None when nothing was to be moved
     # The frame hypotheses that are left, if the frame or the ends of motions are others; else empty
@@ -52,6 +61,9 @@ class Explanation(NamedTuple):
     left: frozenset[Square] = frozenset()
     # Whether it cannot be so though no single field contradicts it: the counts of several observations together do
     contradicted: bool = False
+    change: TableChange | None = None  # what others changed on the table, if they did
+    # How far the robot may be from `place` where it was put elsewhere, in squares: west, south, east, north
+    place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)
     cramped: bool = False  # whether it leaves the origin of the frame suspiciously little room in the square of waking
 
     @property

@@ -7,7 +7,7 @@ kb.localisation.propose.origin_from_turns say which frames are evaluated.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -36,7 +36,7 @@ from utak.kb.localisation.hypotheses.frames import (
 from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, ReplayPrefixes
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import OccupancyMap
-from utak.kb.objects.held_object import HeldObject, subtract_held_objects
+from utak.kb.objects.held_object import HeldObject, Square, subtract_held_objects
 from utak.kb.perception.frame import Frame
 
 MAX_JUDGING_OBSERVATIONS = 24  # last observations by which frames are judged once objects were moved; tuned
@@ -70,6 +70,8 @@ class Surprise:
     hypotheses: tuple[FrameHypothesis, ...]  # the frame hypotheses that are left
     # Completions of the believed map (sampled maps that agree with all counts); None when none were drawn
     pictures: Completions | None = None
+    # The squares of things that were seen and never held, by name, map frame
+    things: Mapping[str, frozenset[Square]] = field(default_factory=dict)
 
     # -- what is known of it ---------------------------------------------------------------------
 

@@ -10,5 +10,7 @@ frame  another frame, once objects were moved
 origin_from_turns  another origin, as turned objects tell it
 earlier_motion  an earlier motion ended elsewhere, once objects were moved
 origin  a walk was blocked, and the origin lies elsewhere
+others  others moved, took or brought things
+lifted  others put the robot elsewhere
 held_object_state  the state of a held object after the chosen outcome
 """

@@ -4,9 +4,11 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TextIO
 
+from utak.kb.language.source_text import source_from_bytes
 from utak.simulator.cli.commands.given import settings_of
 from utak.simulator.episode.episode import (
     STANDARD_OUTPUT,
@@ -19,6 +21,7 @@ from utak.simulator.episode.episode import (
 )
 from utak.simulator.episode.output_files import check_path
 from utak.simulator.episode.program_dump import ProgramDump
+from utak.simulator.episode.record import fact_lines
 from utak.simulator.explaining.missing_rules import rule_paths
 from utak.simulator.replay.output import PAGE_KIND, write_page
 from utak.simulator.replay.page import is_page
@@ -27,6 +30,7 @@ from utak.simulator.run.forking import options_at, recorded_stages, repeat_stage
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Result, Session
 from utak.simulator.run.time_limit import TimeLimit
+from utak.simulator.scenario.disturbances import disturbed_world, read_disturbed
 from utak.simulator.scenario.scenario import Scenario, read_scenario
 from utak.simulator.scenario.untrusted import refuse_links
 from utak.simulator.terminal import exits
@@ -84,6 +88,7 @@ def _run(
     name, step = (options.log, None) if options.resume else (options.origin, options.at)
     is_recorded = name is not None and (not options.resume or (Path(name).exists() and lines_to_resume(name)))
     episode = read_episode(name) if is_recorded else None
+    scenario = _disturbed(options, scenario, name, episode)
     settings = settings_of(options, None if episode is None else options_at(episode.header, step))
     rules = [*options.kb, *options.from_kb]
     stages = [] if episode is None else recorded_stages(name, episode, step, scenario, rules)
@@ -96,8 +101,25 @@ def _run(
         return session.run(watch, None if options.seconds is None else TimeLimit(options.seconds))
 
 
+def _disturbed(options: argparse.Namespace, scenario: Scenario, name: str, episode: Episode | None) -> Scenario:
+    """Return the scenario with what others do by --disturb; without it, by the episode that is gone on from."""
+    world, facts = scenario.world, [] if episode is None else episode.header["world"].get("disturbances", [])
+    if options.disturb is not None:
+        world = read_disturbed(world, options.disturb)
+    elif facts:
+        world = disturbed_world(world, source_from_bytes(name, fact_lines(facts).encode()))
+    return replace(scenario, world=world)
+
+
+def _refusals(line: EpisodeLine) -> None:
+    """Print what others could not do before the command of a line."""
+    for fact, why in line.get("refused", {}).items():
+        print(one_line(f"step {line['step']}: not disturbed: {fact}: {why}"), file=sys.stderr)
+
+
 def _listeners(options: argparse.Namespace, lines: list[EpisodeLine]) -> Iterator[LineListener]:
-    """Yield the functions that take each line of the episode, for --dump-asp and --html."""
+    """Yield the functions that take each line of the episode, for --disturb, --dump-asp and --html."""
+    yield _refusals
     if options.dump_asp is not None:
         yield ProgramDump(options.dump_asp, "the run", [*options.kb, *options.from_kb], options.force).add
     if options.html is not None:

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
 from utak.simulator.scenario.picture import draw, read_picture
 from utak.simulator.scenario.scenario import read_any_world
-from utak.simulator.scenario.worldfile import read_world, touches_floor
+from utak.simulator.scenario.worldfile import read_world
+from utak.simulator.world.placing import touches_floor
 from utak.simulator.world.world import World
 
 TABLE = "table(10, 8).\n"
