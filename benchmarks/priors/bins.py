@@ -39,7 +39,7 @@ WHOLE = bins(0)
 MASS = {"undecided": bins(0, 5, 15, 30, 60, 120), "isolated": bins(0, 5, 15, 30, 60, 120)}
 # For whether it is an object: bins of its extent, squares, and of its mass. An island of the verge is small mostly.
 EXTENT = {"undecided": bins(0, 3, 5, 7, 9, 13, 17, 25)}
-OBJECT_MASS = {"isolated": bins(0, 60)}
+OBJECT_MASS = {"isolated": bins(0, 30, 60)}
 CASES = (
     *("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
     "cut",

@@ -39,10 +39,11 @@ class Activities:
         where = PerModel(destination)
         self._transporter, self._clearer, trials = Transporter(), ObstacleClearer(), Trials()
         clearer = self._clearer
-        # By the name of a step that settles something: its next command, or what it came to.
+        # By the name of a step that settles something: its next command, or what it came to. These are methods, not
+        # lambdas: when a mind is copied (planner/cycle.py), a method goes with its object, a lambda keeps the old one.
         self._settling: Mapping[str, Callable[[Sequence[Fact], StageTurn], Decision]] = {
-            "find": lambda goals, turn: self._transporter.towards(goals[0], turn),
-            "pursue": lambda goals, turn: self._transporter.towards(goals[0], turn),
+            "find": self._towards_first,
+            "pursue": self._towards_first,
             "pull": clearer.pull,
             "make_way": clearer.clear,
             "try": trials.next,
@@ -135,6 +136,10 @@ class Activities:
             "doubt": lambda: self._doubt(activity.subject, last, turn),
         }
         return doing[activity.kind]()
+
+    def _towards_first(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command towards the first of some goals for objects, or what it came to."""
+        return self._transporter.towards(goals[0], turn)
 
     def _doubt(self, subject: str, last: Decision, turn: StageTurn) -> Decision:
         """Return the open fact that would overturn a verdict; `limit` where rules close whatever door it may show."""

@@ -9,7 +9,9 @@ import pytest
 
 import utak
 from utak.simulator.cli.main import main
-from utak.simulator.episode.episode import encode, read_episode
+from utak.simulator.episode.episode import EpisodeLog, encode, read_episode
+from utak.simulator.run.robots import make_robot
+from utak.simulator.run.session import Session
 from utak.simulator.run.story import WORLD_KEYS, live_story
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
@@ -101,6 +103,22 @@ def test_the_limit_of_commands_can_be_raised(recorded: Path) -> None:
     assert fork(recorded, 3, origin="short.jsonl") == 75
     assert fork(recorded, 3, "--max-steps", "200", origin="short.jsonl") == 0
     assert lines(recorded / "fork.jsonl")[1:] == lines(recorded / "first.jsonl")[1:]
+
+
+def test_whatever_is_adopted_at_a_step_the_same_command_comes_next(recorded: Path) -> None:
+    """What a mind decided last changes nothing in the mind as it was before, which interprets the impression anew."""
+    scene, settings = read_scenario(recorded / "scene"), Settings()
+    session = Session(scene, settings, make_robot, EpisodeLog(None))
+    session.wake()
+    presses = 0
+    while not session.finished:
+        decided = session.robot.decision
+        for _ in range(2):
+            session.adopt(scene, settings)
+            assert session.robot.decision == decided
+        presses += "pressed" in decided.why
+        session.step()
+    assert presses == 2  # the second press follows from what was pressed before: memory that a copy must not share
 
 
 @pytest.mark.long
