@@ -202,5 +202,7 @@ def with_others(
 
 def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:
     """Return whether an explanation costs more than what others may have done, by kb/asp/accommodation.lp."""
-    far = explanation.how == "slipped" and not state.slipped and explanation.distance > 1
+    if state.slipped:  # whose motions slip cannot tell its own slips from what others do
+        return False
+    far = explanation.how == "slipped" and explanation.distance > 1
     return explanation.unexplained >= MIN_UNEXPLAINED or far

@@ -90,7 +90,8 @@ class Tracker:
             return None
         self.state = former
         self._put_elsewhere(found.error)
-        for look, observation in zip(state.looks, state.observations, strict=True):
+        looked = state.observations[-len(state.looks) :]  # since a map begun anew when lost, the newest alone
+        for look, observation in zip(state.looks, looked, strict=True):
             place = found.place[0] + look.away[0] - away[0], found.place[1] + look.away[1] - away[1]
             clashes = residual_at(self.state, observation.ranges, place, self.state.held_objects.values())
             lifted = Explanation("lifted", place, former.frame, clashes, 1.0)

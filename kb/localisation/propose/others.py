@@ -80,7 +80,11 @@ def _gone_things(surprise: Surprise, place: Position, things: Mapping[str, set[S
         lacking = _balance(surprise, place, _without(surprise, gone), _squares_of(things, gone))[0]
         fields = [under[field] for field in np.flatnonzero(lacking)]
         shares = {name: sum(not own.isdisjoint(field) for field in fields) for name, own in things.items()}
-        left = [(-share, name) for name, share in shares.items() if share and name not in gone]
+        left = [
+            (-share, name)
+            for name, share in shares.items()
+            if share and name not in gone and _is_missed(things[name], under, surprise.ranges)
+        ]
         if not left:
             return gone
         gone.append(min(left)[1])
@@ -93,6 +97,13 @@ def _is_seen(surprise: Surprise, place: Position, squares: set[Square]) -> bool:
     x, y = math.floor(place[0]), math.floor(place[1])
     under = _squares_under(samples, x, y)
     return any(not squares.isdisjoint(under[field]) for field in np.flatnonzero(single))
+
+
+def _is_missed(own: set[Square], under: Sequence[set[Square]], ranges: FieldRanges) -> bool:
+    """Return whether at most half of what would be seen of a thing may be there: else it lies a little otherwise."""
+    expected = [len(own & field) for field in under]
+    there = sum(min(count, int(most)) for count, most in zip(expected, ranges[:, 1], strict=True))
+    return 2 * there <= sum(expected)
 
 
 def _new_squares(
