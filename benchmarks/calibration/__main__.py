@@ -15,7 +15,7 @@ from pathlib import Path
 
 from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.picture import picture
-from benchmarks.calibration.runs import Ended, Look, watched
+from benchmarks.calibration.runs import Ended, LookedAt, watched
 from benchmarks.calibration.statements import HeldStatement, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
 from utak.simulator.run.warming import warm_all
@@ -24,7 +24,7 @@ MOMENT_PARTS = 2  # of a run between the moments: first, middle, last
 MomentStatements = tuple[int, tuple[HeldStatement, ...]]  # step, statements
 
 
-def noted(look: Look) -> MomentStatements:
+def noted(look: LookedAt) -> MomentStatements:
     """Return the statements of a moment, with its step."""
     return look.step, tuple(statements(look.moment))
 

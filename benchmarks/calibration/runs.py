@@ -19,7 +19,7 @@ from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
 
 
-class Look(NamedTuple):
+class LookedAt(NamedTuple):
     """The moment after an impression: belief, truth, and what encodings were given."""
 
     moment: Moment
@@ -54,7 +54,9 @@ class TimeOverError(Exception):
     """A run took more than its seconds."""
 
 
-def watched(asked: Asked, noise: float, max_steps: int, seconds: int, note: Callable[[Look], Any], parts: int) -> Ended:
+def watched(
+    asked: Asked, noise: float, max_steps: int, seconds: int, note: Callable[[LookedAt], Any], parts: int
+) -> Ended:
     """Run the robot in a world and return what `note` returned at parts + 1 moments, from the first to the last step.
 
     seconds : after which a run is ended, and its last step so far counts; 0 for no limit.
@@ -107,10 +109,10 @@ def _decisions(
     return tuple(found)
 
 
-def _look(dealt: DealtWorld, session: Session, decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> Look:
+def _look(dealt: DealtWorld, session: Session, decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> LookedAt:
     """Return the present moment of a run."""
     world, model = dealt.world, session.robot.model  # type: ignore[attr-defined]
     truth = TableTruth(dealt, dict(session.table.polygons), session.table.utak)
     frame = frame_of(model, truth, (world.utak.x, world.utak.y))
     facts = tuple(fact.rstrip(".") for fact in session.line["belief"]["facts"])
-    return Look(moment_of(model, facts, truth, frame), model, frame, session.line["step"], decisions)
+    return LookedAt(moment_of(model, facts, truth, frame), model, frame, session.line["step"], decisions)

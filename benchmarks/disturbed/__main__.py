@@ -15,7 +15,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from benchmarks.disturbed.run import TASKS, Row, run, summary
+from benchmarks.disturbed.run import TASKS, DisturbedRow, run, summary
 from benchmarks.worlds.makers import add_kinds
 
 
@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("-o", "--output", type=Path, help="a JSON line for each row")
     add_kinds(parser)
     given = parser.parse_args(arguments)
-    rows: list[Row] = []
+    rows: list[DisturbedRow] = []
     with tempfile.TemporaryDirectory() as made:
         folder = given.keep or Path(made)
         for row in _rows(given, folder):
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return int(any(row.believed and not row.achieved for row in rows))
 
 
-def _rows(given: argparse.Namespace, folder: Path) -> Iterator[Row]:
+def _rows(given: argparse.Namespace, folder: Path) -> Iterator[DisturbedRow]:
     """Yield the rows that are asked for; worlds in which there is nothing to disturb are passed over."""
     if given.only:
         act, task, seed = given.only.split(":")

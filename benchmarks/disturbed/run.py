@@ -26,7 +26,7 @@ from utak.simulator.scenario.settings import Settings
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.world import World
 
-ACTS = ("move", "lift", "appear", "vanish")
+DISTURBING_ACTS = ("move", "lift", "appear", "vanish")
 TASKS = {
     "move": (3, 5, 6, 7, 8, 9),
     "lift": (1, 2, 3, 5, 6, 7, 9),
@@ -45,7 +45,7 @@ Line = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Row:
+class DisturbedRow:
     """The outcome of one disturbed run; None where a question does not arise."""
 
     act: str
@@ -107,7 +107,7 @@ def _on_grid(shape: Any) -> bool:
     return bool(np.abs(shapely.get_coordinates(shape) % 1.0).max() < 1e-9)
 
 
-def run(act: str, task: int, seed: int, kind: str, folder: Path) -> Row | None:
+def run(act: str, task: int, seed: int, kind: str, folder: Path) -> DisturbedRow | None:
     """Return the outcome of a disturbed run; None when the undisturbed one fails, or there is no room."""
     world = scenario(task, seed, kind)
     if not world.possible:
@@ -116,7 +116,7 @@ def run(act: str, task: int, seed: int, kind: str, folder: Path) -> Row | None:
     calm = _lines(place, place / "calm.jsonl", "")
     if not calm[1]["achieved"] or len(calm[0]) < 2:
         return None
-    fact, step = disturbance(act, np.random.default_rng([ACTS.index(act), task, seed]), world, calm[0])
+    fact, step = disturbance(act, np.random.default_rng([DISTURBING_ACTS.index(act), task, seed]), world, calm[0])
     if not fact:
         return None
     (place / "others.lp").write_text(f"{fact}\n")
@@ -128,7 +128,7 @@ def run(act: str, task: int, seed: int, kind: str, folder: Path) -> Row | None:
     lines, result = _lines(place, place / "episode.jsonl", fact)
     if not any(line.get("disturbed") for line in lines):
         return None
-    row = Row(act, task, seed, fact, steps=result["steps"], before=len(calm[0]) - 1)
+    row = DisturbedRow(act, task, seed, fact, steps=result["steps"], before=len(calm[0]) - 1)
     row = replace(row, seconds=round(time.process_time() - begin, 1), reason=result["reason"])
     judged = tuple(findings(place, place / "episode.jsonl") or ()) if act in ("move", "lift", "vanish") else ()
     row = replace(row, judged=judged, **{key: result[key] for key in ("achieved", "believed", "verdict")})
@@ -213,9 +213,9 @@ def _believed(world: World, line: Line, polygon: Any) -> bool:
     return False
 
 
-def summary(rows: Sequence[Row]) -> Iterator[str]:
+def summary(rows: Sequence[DisturbedRow]) -> Iterator[str]:
     """Yield a line for each kind of disturbance."""
-    for act in ACTS:
+    for act in DISTURBING_ACTS:
         own = [row for row in rows if row.act == act]
         if not own:
             continue

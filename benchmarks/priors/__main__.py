@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.calibration.dealt import dealt
-from benchmarks.calibration.runs import Look, watched
+from benchmarks.calibration.runs import LookedAt, watched
 from benchmarks.calibration.statements import statements
 from benchmarks.harness.judging import CHECKOUT
 from benchmarks.priors.count import Counted, counted_classes, counted_kinds
@@ -35,7 +35,7 @@ class CountedMoment(NamedTuple):
     untried: tuple[bool, ...]  # of the objects never moved, which are objects in truth: whether each can be moved
 
 
-def noted(look: Look) -> CountedMoment:
+def noted(look: LookedAt) -> CountedMoment:
     """Return what is counted of a moment."""
     nodes, tried = look.moment.nodes, {node.name for node in look.model.objects if node.moved or node.stuck}
     untried = (

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.calibration.runs import Look
+from benchmarks.calibration.runs import LookedAt
 from utak.kb.language.atoms import atom_parts
 from utak.kb.perception.interpretation import LONGEST_OBJECT
 
@@ -31,7 +31,7 @@ class FitSeen(NamedTuple):
     shape: str | None  # in truth
 
 
-def regions_seen(look: Look) -> Iterator[RegionSeen]:
+def regions_seen(look: LookedAt) -> Iterator[RegionSeen]:
     """Yield the regions of the map that are not floor."""
     given = _given(look, "interpretation")
     solid = {a[0] for name, a in given if name == "region" and a[1] == "nonzero"}
@@ -80,12 +80,12 @@ def _situation(cut: bool, isolated: bool, bounds: bool, felt: set[str], extent: 
     return "undecided"
 
 
-def _is_cut(look: Look, region: str) -> bool:
+def _is_cut(look: LookedAt, region: str) -> bool:
     """Return whether a region was cut out of the bounds because of what was felt, and never held."""
     return any(region_of_map.name == region for region_of_map in look.model.percept.regions)
 
 
-def fits_seen(look: Look) -> Iterator[FitSeen]:
+def fits_seen(look: LookedAt) -> Iterator[FitSeen]:
     """Yield the objects whose shape is decided at this moment."""
     given = _given(look, "shapes")
     numbers: dict[str, dict[str, int]] = {"open_squares": {}, "full_squares": {}}
@@ -103,7 +103,7 @@ def fits_seen(look: Look) -> Iterator[FitSeen]:
             yield FitSeen(node, order, open_, full, true.kind, true.shape)
 
 
-def _given(look: Look, encoding: str) -> list[tuple[str, tuple[str, ...]]]:
+def _given(look: LookedAt, encoding: str) -> list[tuple[str, tuple[str, ...]]]:
     """Return the facts that an encoding was given at this moment, as name and arguments; [] where it was not asked."""
     found = next((facts for name, facts in look.decisions if name == encoding), ())
     return [atom_parts(fact) for fact in found]

@@ -34,7 +34,7 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     snap_to_middle,
 )
 from utak.kb.localisation.hypotheses.what_if import command_motion
-from utak.kb.localisation.propose.lifted import look_at
+from utak.kb.localisation.propose.lifted import MIN_KNOWN_LOOKS, look_at
 from utak.kb.localisation.propose.others import forgetting
 from utak.kb.localisation.score import Judgement, residual_at
 from utak.kb.localisation.state import TrackerState
@@ -85,7 +85,8 @@ class Tracker:
         self.state = state = replace(
             state, looks=(*state.looks, look_at(former.surprise(command, newest.ranges), away))
         )
-        found = None if state.held_objects else recognise(former.occupancy, state.looks)
+        is_known = len(former.observations) >= MIN_KNOWN_LOOKS and not state.held_objects
+        found = recognise(former.occupancy, state.looks) if is_known else None
         if found is None:
             return None
         self.state = former

@@ -11,6 +11,8 @@ from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.localisation.hypotheses.recognition import KnownMap, Look, mean_likelihood, recognise
 from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
 
+MIN_KNOWN_LOOKS = 2  # looks that a map was made of: by one alone, much else fits; a convention
+
 
 def weighed_with_lifting(surprise: Surprise, explanations: Sequence[tuple[Surprise, Explanation]]) -> list[Explanation]:
     """Return explanations, and that the robot was lifted, each with its price by how likely it makes what is seen."""
@@ -19,7 +21,7 @@ def weighed_with_lifting(surprise: Surprise, explanations: Sequence[tuple[Surpri
     likely = [_likelihood(after, one) for after, one in explanations]
     lifting = mean_likelihood(look.scores)
     best = max(lifting, *likely)
-    found = recognise(surprise.occupancy, [look])
+    found = recognise(surprise.occupancy, [look]) if len(surprise.observations) >= MIN_KNOWN_LOOKS else None
     frame, occupancy, held_objects = surprise.frame, surprise.occupancy, surprise.held_objects.values()
     lifted = Explanation("lost", surprise.place, frame, 0, 1.0)
     if found is not None:

@@ -60,7 +60,7 @@ def test_a_thing_that_was_taken_is_missing_until_it_is_seen_again() -> None:
 
 def test_a_thing_that_was_brought_is_a_new_one() -> None:
     mind = looked()
-    new = [(10, 10), (11, 10)]
+    new = [(x, y) for x in (10, 11, 12) for y in (10, 11)]
     model, accommodated = mind.perceive(Move(1.0, 0.0), impression(with_things(*THING, *new), (HERE[0] + 1, HERE[1])))
     assert accommodated.explanation.how == "changed"
     assert sorted(node.name for node in model.objects) == ["o1", "o2"]
