@@ -212,4 +212,5 @@ class Knowledge:
         self.tracker.keep_things(
             {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}
         )
-        return replace(model, objects=self.objects, missing=self._names.missing)
+        elsewhere = self.tracker.state.former is not None
+        return replace(model, objects=self.objects, missing=self._names.missing, elsewhere=elsewhere)

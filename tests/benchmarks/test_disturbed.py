@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.disturbed.run import Row, disturbance, summary
+from benchmarks.disturbed.run import DisturbedRow, disturbance, summary
 from benchmarks.worlds.makers import scenario
 from utak.kb.language.source_text import source_from_bytes
 from utak.simulator.scenario.disturbances import disturbed_world
@@ -26,9 +26,9 @@ def test_a_random_disturbance_can_happen(act: str) -> None:
 
 def test_the_summary_counts_rows_of_each_kind() -> None:
     rows = [
-        Row("move", 3, 0, noticed=True, placed=True, achieved=True, believed=True),
-        Row("move", 5, 0, noticed=False, placed=None, achieved=False, believed=True),
-        Row("lift", 1, 0, seen=True, looks=4, verdict="impossible"),
+        DisturbedRow("move", 3, 0, noticed=True, placed=True, achieved=True, believed=True),
+        DisturbedRow("move", 5, 0, noticed=False, placed=None, achieved=False, believed=True),
+        DisturbedRow("lift", 1, 0, seen=True, looks=4, verdict="impossible"),
     ]
     move, lift = summary(rows)
     assert "2 worlds, done 1, noticed at once 1 of 2, place right 1 of 1, false done 1, impossible 0" in move

@@ -28,10 +28,10 @@ def weighed_with_lifting(surprise: Surprise, explanations: Sequence[tuple[Surpri
         residual = count_clashes(frame, occupancy, held_objects, found.place, surprise.ranges)
         lifted = Explanation("lifted", found.place, frame, residual, 1.0, place_error=found.error)
     weighed = zip((one for _, one in explanations), likely, strict=True)
-    return [
-        *(one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in weighed),
-        lifted._replace(prior_cost=best - lifting),
-    ]
+    found_so = [one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in weighed]
+    if surprise.in_hand is not None:  # it would have to put that down first, to know that its hand is empty
+        return found_so
+    return [*found_so, lifted._replace(prior_cost=best - lifting)]
 
 
 def _likelihood(surprise: Surprise, explanation: Explanation) -> float:
