@@ -21,7 +21,7 @@ from utak.kb.localisation.propose.earlier_motion import (
 from utak.kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
 from utak.kb.localisation.propose.lifted import weighed_with_lifting
 from utak.kb.localisation.propose.others import propose_changes
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.state import MAX_RESIDUAL, TrackerState
 from utak.kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
@@ -197,12 +197,19 @@ def with_others(
         beside = propose_changes(carried, [outcome.place])
         others = [one for one in beside if one.change is not None and state.in_hand not in one.change.gone]
         explanations += [(carried, one._replace(outcome=outcome)) for one in others]
-    return choose(state, weighed_with_lifting(surprise, explanations))
+    # Who was put elsewhere sees nothing as expected: no less than what shows by itself that localisation has failed.
+    may_be_lifted = chosen.unexplained >= MAX_RESIDUAL or _slipped_far(state, chosen)
+    return choose(state, weighed_with_lifting(surprise, explanations, may_be_lifted))
 
 
 def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:
     """Return whether an explanation costs more than what others may have done, by kb/asp/accommodation.lp."""
-    if state.slipped:  # whose motions slip cannot tell its own slips from what others do
+    # Whose motions slip cannot tell its own slips from what others do; what it moved itself may lie a little otherwise.
+    if state.slipped or state.held_objects:
         return False
-    far = explanation.how == "slipped" and explanation.distance > 1
-    return explanation.unexplained >= MIN_UNEXPLAINED or far
+    return explanation.unexplained >= MIN_UNEXPLAINED or _slipped_far(state, explanation)
+
+
+def _slipped_far(state: TrackerState, explanation: Explanation) -> bool:
+    """Return whether an explanation is a first slip, of more than a square."""
+    return explanation.how == "slipped" and not state.slipped and explanation.distance > 1

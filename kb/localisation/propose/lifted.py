@@ -14,7 +14,9 @@ from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
 MIN_KNOWN_LOOKS = 2  # looks that a map was made of: by one alone, much else fits; a convention
 
 
-def weighed_with_lifting(surprise: Surprise, explanations: Sequence[tuple[Surprise, Explanation]]) -> list[Explanation]:
+def weighed_with_lifting(
+    surprise: Surprise, explanations: Sequence[tuple[Surprise, Explanation]], may_be_lifted: bool
+) -> list[Explanation]:
     """Return explanations, and that the robot was lifted, each with its price by how likely it makes what is seen."""
     # explanations : each with the surprise in which what is in hand lies where it says
     look = look_at(surprise)
@@ -29,9 +31,8 @@ def weighed_with_lifting(surprise: Surprise, explanations: Sequence[tuple[Surpri
         lifted = Explanation("lifted", found.place, frame, residual, 1.0, place_error=found.error)
     weighed = zip((one for _, one in explanations), likely, strict=True)
     found_so = [one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in weighed]
-    if surprise.in_hand is not None:  # it would have to put that down first, to know that its hand is empty
-        return found_so
-    return [*found_so, lifted._replace(prior_cost=best - lifting)]
+    # Who holds something would have to put that down first, to know that the hand is empty.
+    return found_so if not may_be_lifted else [*found_so, lifted._replace(prior_cost=best - lifting)]
 
 
 def _likelihood(surprise: Surprise, explanation: Explanation) -> float:
