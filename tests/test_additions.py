@@ -193,7 +193,7 @@ default_price(rest(S), C) :- settles(rest(S), S), C = 1.
             '    "rest": "the robot rests, for {}",\n',
         ),
         ("kb/language/vocabulary.py", '"make_way", "try", "feel")', '"rest", '),
-        (activities, '            "find": lambda', '            "rest": self._rest,\n'),
+        (activities, '            "find": self._towards_first', '            "rest": self._rest,\n'),
         (activities, '            "feel": (clearer', '            "rest": (self._is_resting, self._rest_on),\n'),
         (activities, "    def holds(self, situation", method),
     )

@@ -80,7 +80,7 @@ def test_an_atom_of_an_encoding_is_explained_and_so_is_its_absence(
     [
         ("bigg(o1)", r"unknown predicate bigg/1\n.*\n.*\n  hint: did you mean big\?"),
         ("big(o1, o2)", r"unknown predicate big/2\n.*\n.*\n  hint: there is big/1$"),
-        ("door(d1, 3)", r"unknown predicate door/2\n.*\n.*\n  hint: there is door/1$"),
+        ("door(d1, 3, 4)", r"unknown predicate door/3\n.*\n.*\n  hint: there is door/1, door/2$"),
     ],
 )
 def test_unknown_predicates_are_refused_with_a_hint(
