@@ -246,12 +246,12 @@ def test_a_number_of_errands_counts_over_the_whole_run(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_what_is_in_hand_is_put_down_where_a_rule_leaves_no_plan_any_more(tmp_path: Path) -> None:
     """From the door more is seen of the next room, of which more is unseen then than the rule allows."""
-    rules = rule_file(tmp_path, ":- brought(X, _, _, _), X != utak, unseen(R, N), N > 100.")
+    rules = rule_file(tmp_path, ":- brought(X, _, _, _), X != utak, unseen(R, N), N > 160.")
     scenario = utak.Scenario.read(EXAMPLES / "push_square_next_room")
     episode = utak.Run(scenario, rules=[rules], max_steps=8).finish()
     released = [step.line["why"] for step in episode if step.line["action"] == {"do": "release"}]
     assert released and f"{rules}:1 leaves no plan" in released[0] and episode.verdict != "done"
-    assert all(x < 24 for step in episode for x, _ in step.line["objects"]["g1"])
+    assert all(any(x < 24 for x, _ in step.line["objects"]["g1"]) for step in episode)  # never wholly beyond
 
 
 def test_the_robot_does_not_go_where_a_rule_leaves_it_no_plan(tmp_path: Path) -> None:
