@@ -212,5 +212,4 @@ class Knowledge:
         self.tracker.keep_things(
             {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}
         )
-        elsewhere = self.tracker.state.former is not None
-        return replace(model, objects=self.objects, missing=self._names.missing, elsewhere=elsewhere)
+        return replace(model, objects=self.objects, missing=self._names.missing)

@@ -34,7 +34,6 @@ from utak.kb.localisation.score import (
     propose_earlier_motions,
     propose_frame,
     residual_at,
-    with_others,
 )
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.patch import patch_of_polygon
@@ -45,15 +44,6 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn."""
-    judged = _explain_carry(state, surprise, held, motion)
-    end = predicted_outcome(state.place, held.polygon, motion)
-    carried = held.moved(end.polygon, held.slack, end.degrees, commanded=True)
-    after = replace(surprise, held_objects={**state.held_objects, held.name: carried})
-    return judged._replace(explanation=with_others(state, surprise, judged.explanation, [state.place], after, end))
-
-
-def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
-    """Return the explanation chosen for the observation after a push or a turn, if nothing else moved things."""
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
     budget = SearchBudget(state.search_count)

@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
-from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
 from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
 from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
@@ -180,25 +179,15 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
 
 
 def with_others(
-    state: TrackerState,
-    surprise: Surprise,
-    chosen: Explanation,
-    places: Sequence[Position],
-    carried: Surprise | None = None,
-    outcome: CarryOutcome | None = None,
+    state: TrackerState, surprise: Surprise, chosen: Explanation, places: Sequence[Position]
 ) -> Explanation:
     """Return the choice between an explanation and what others may have done, if it explains badly."""
-    # places : where the look may have been made if others moved things, the likeliest first. carried : the surprise
-    # with what is in hand where a motion took it, and the outcome of that motion; others may have moved other things.
+    # places : where the look may have been made if others moved things, the likeliest first
     if not _explains_badly(state, chosen):
         return chosen
-    explanations = [(surprise, one) for one in (chosen, *propose_changes(surprise, places))]
-    if carried is not None and outcome is not None:
-        beside = propose_changes(carried, [outcome.place])
-        others = [one for one in beside if one.change is not None and state.in_hand not in one.change.gone]
-        explanations += [(carried, one._replace(outcome=outcome)) for one in others]
+    explanations = [chosen, *propose_changes(surprise, places)]
     # Who was put elsewhere sees nothing as expected: no less than what shows by itself that localisation has failed.
-    may_be_lifted = chosen.unexplained >= MAX_RESIDUAL or _slipped_far(state, chosen)
+    may_be_lifted = chosen.unexplained >= MAX_RESIDUAL or _slipped_far(chosen)
     return choose(state, weighed_with_lifting(surprise, explanations, may_be_lifted))
 
 
@@ -207,9 +196,9 @@ def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:
     # Whose motions slip cannot tell its own slips from what others do; what it moved itself may lie a little otherwise.
     if state.slipped or state.held_objects:
         return False
-    return explanation.unexplained >= MIN_UNEXPLAINED or _slipped_far(state, explanation)
+    return explanation.unexplained >= MIN_UNEXPLAINED or _slipped_far(explanation)
 
 
-def _slipped_far(state: TrackerState, explanation: Explanation) -> bool:
-    """Return whether an explanation is a first slip, of more than a square."""
-    return explanation.how == "slipped" and not state.slipped and explanation.distance > 1
+def _slipped_far(explanation: Explanation) -> bool:
+    """Return whether an explanation is a slip of more than a square."""
+    return explanation.how == "slipped" and explanation.distance > 1

@@ -91,7 +91,6 @@ class WorldModel:
     kinds: Kinds  # What each region is taken for
     objects: tuple[Node, ...]  # The isolated objects, and what may be one, by number
     held: str | None = None  # The name of the object in hand
-    elsewhere: bool = False  # Whether others put the robot where it recognised nothing so far: the map is a new one
     missing: tuple[str, ...] = ()  # The names of things that are no longer where they lay, and were not seen since
     looked_from: frozenset[Square] = frozenset()  # The squares on which an impression was received, map frame
     barred: frozenset[Square] = frozenset()  # Squares that stopped a motion, or probably did, map frame

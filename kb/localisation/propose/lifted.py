@@ -15,24 +15,25 @@ MIN_KNOWN_LOOKS = 2  # looks that a map was made of: by one alone, much else fit
 
 
 def weighed_with_lifting(
-    surprise: Surprise, explanations: Sequence[tuple[Surprise, Explanation]], may_be_lifted: bool
+    surprise: Surprise, explanations: Sequence[Explanation], may_be_lifted: bool
 ) -> list[Explanation]:
-    """Return explanations, and that the robot was lifted, each with its price by how likely it makes what is seen."""
-    # explanations : each with the surprise in which what is in hand lies where it says
+    """Return explanations, and perhaps that the robot was lifted, each priced by how likely it makes what is seen."""
     look = look_at(surprise)
-    likely = [_likelihood(after, one) for after, one in explanations]
+    likely = [_likelihood(surprise, one) for one in explanations]
     lifting = mean_likelihood(look.scores)
     best = max(lifting, *likely)
+    weighed = [
+        one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in zip(explanations, likely, strict=True)
+    ]
+    if not may_be_lifted:
+        return weighed
     found = recognise(surprise.occupancy, [look]) if len(surprise.observations) >= MIN_KNOWN_LOOKS else None
     frame, occupancy, held_objects = surprise.frame, surprise.occupancy, surprise.held_objects.values()
     lifted = Explanation("lost", surprise.place, frame, 0, 1.0)
     if found is not None:
         residual = count_clashes(frame, occupancy, held_objects, found.place, surprise.ranges)
         lifted = Explanation("lifted", found.place, frame, residual, 1.0, place_error=found.error)
-    weighed = zip((one for _, one in explanations), likely, strict=True)
-    found_so = [one._replace(prior_cost=one.prior_cost + best - nats) for one, nats in weighed]
-    # Who holds something would have to put that down first, to know that the hand is empty.
-    return found_so if not may_be_lifted else [*found_so, lifted._replace(prior_cost=best - lifting)]
+    return [*weighed, lifted._replace(prior_cost=best - lifting)]
 
 
 def _likelihood(surprise: Surprise, explanation: Explanation) -> float:

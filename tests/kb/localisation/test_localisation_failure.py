@@ -97,11 +97,11 @@ def test_after_an_observation_that_agrees_with_nothing_a_new_map_is_begun() -> N
     knowledge = walked(ROOM, [(2, 0), (0, 3)]).knowledge
     x, y = utak_in(ROOM)
     model, _ = knowledge.perceive(Release(), impression(world_of(ROOM), (x + 2, y + 3)))
-    assert not model.contradicted and not model.elsewhere
+    assert not model.contradicted and knowledge.memory.former is None
     shut_in = impression(lambda i, j: (i, j) != (0, 0), (0, 0))
     model, accommodated = knowledge.perceive(Release(), shut_in)
     assert accommodated.explanation.how == "lost"
-    assert model.anew and model.elsewhere
+    assert model.anew and knowledge.memory.former is not None
 
 
 def lost_in(rows: list[str]) -> Knowledge:
