@@ -15,7 +15,7 @@ from pathlib import Path
 
 from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.picture import picture
-from benchmarks.calibration.runs import Ended, LookedAt, watched
+from benchmarks.calibration.runs import Ended, LookedAt, numbers, watched
 from benchmarks.calibration.statements import HeldStatement, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
 from utak.simulator.run.warming import warm_all
@@ -59,17 +59,13 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.calibration", description="Compare belief with truth.")
     parser.add_argument("--worlds", type=int, default=60, help="how many (%(default)s)")
     parser.add_argument("--seed", type=int, default=1000, help="of the worlds (%(default)s)")
-    parser.add_argument("--noise", type=_numbers, default=[0.0, 0.0, 0.0, 0.0, 0.05], help="with commas, in turn")
+    parser.add_argument("--noise", type=numbers, default=[0.0, 0.0, 0.0, 0.0, 0.05], help="with commas, in turn")
     parser.add_argument("--max-steps", type=int, default=80, help="most commands (%(default)s)")
     parser.add_argument("--seconds", type=int, default=600, help="most seconds a world, 0 for no limit (%(default)s)")
     parser.add_argument("--json", action="store_true", help="print one JSON value instead of the table")
     parser.add_argument("--svg", type=Path, help="a picture of the reliability")
     parser.add_argument("--runs", type=Path, help="how each run ended, a JSON line each")
     return parser
-
-
-def _numbers(text: str) -> list[float]:
-    return [float(part) for part in text.split(",")]
 
 
 if __name__ == "__main__":

@@ -54,6 +54,11 @@ class TimeOverError(Exception):
     """A run took more than its seconds."""
 
 
+def numbers(text: str) -> list[float]:
+    """Return the numbers that a text has between commas."""
+    return [float(part) for part in text.split(",")]
+
+
 def watched(
     asked: Asked, noise: float, max_steps: int, seconds: int, note: Callable[[LookedAt], Any], parts: int
 ) -> Ended:

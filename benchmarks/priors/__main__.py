@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.calibration.dealt import dealt
-from benchmarks.calibration.runs import LookedAt, watched
+from benchmarks.calibration.runs import LookedAt, numbers, watched
 from benchmarks.calibration.statements import statements
 from benchmarks.harness.judging import CHECKOUT
 from benchmarks.priors.count import Counted, counted_classes, counted_kinds
@@ -98,7 +98,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.priors", description="Count priors in random worlds.")
     parser.add_argument("--worlds", type=int, default=250, help="how many (%(default)s)")
     parser.add_argument("--seed", type=int, default=5000, help="of the worlds (%(default)s)")
-    parser.add_argument("--noise", type=_numbers, default=[0.0, 0.0, 0.0, 0.0, 0.05], help="with commas, in turn")
+    parser.add_argument("--noise", type=numbers, default=[0.0, 0.0, 0.0, 0.0, 0.05], help="with commas, in turn")
     parser.add_argument("--max-steps", type=int, default=60, help="most commands (%(default)s)")
     parser.add_argument("--seconds", type=int, default=600, help="most seconds a world, 0 for no limit (%(default)s)")
     parser.add_argument("--parts", type=int, default=6, help="into how many parts moments part a run (%(default)s)")
@@ -106,10 +106,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
     parser.add_argument("-o", "--output", type=Path, default=PRIORS_FILE, help="the file (%(default)s)")
     return parser
-
-
-def _numbers(text: str) -> list[float]:
-    return [float(part) for part in text.split(",")]
 
 
 if __name__ == "__main__":

@@ -73,9 +73,8 @@ def possible_worlds(program: str, most: int = MAX_COMPONENT_WORLDS) -> PossibleW
     known, possible = _consequences(program, "cautious"), _consequences(program, "brave")
     control, ground = _grounded(program, ["--opt-mode=ignore", "0"])
     symbols = {atom.literal: atom.symbol for atom in control.symbolic_atoms}
-    settled = {
-        number: symbol in known for number, symbol in symbols.items() if symbol in known or symbol not in possible
-    }
+    undecided = possible - known
+    settled = {number: symbol in known for number, symbol in symbols.items() if symbol not in undecided}
     open_atoms = {symbol: number for number, symbol in symbols.items() if number not in settled}
     groups = ground.groups(settled, open_atoms.values())
     with control.solve(yield_=True) as handle:
@@ -86,7 +85,8 @@ def possible_worlds(program: str, most: int = MAX_COMPONENT_WORLDS) -> PossibleW
     for numbers in groups:
         atoms = frozenset(symbols[number] for number in numbers)
         others = [(symbol, value) for symbol, value in one.items() if symbol not in atoms]
-        weights = [(literal, weight) for literal, weight in ground.weights if abs(literal) in ground.tied(numbers)]
+        tied = ground.tied(numbers)
+        weights = [(literal, weight) for literal, weight in ground.weights if abs(literal) in tied]
         components.append(Component(atoms, _worlds(control, atoms, others, weights, most)))
     return PossibleWorlds(frozenset(known), sorted(components, key=lambda one: sorted(map(str, one.atoms))))
 
