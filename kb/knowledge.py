@@ -191,6 +191,7 @@ class Knowledge:
             unsettled_seams=regions.unsettled_seams,
             lost=memory.lost,
             anew=bool(memory.been),
+            elsewhere=memory.former is not None,
             shaken=memory.shaken,
             contradicted=accommodated.explanation.unexplained > 0,
         )

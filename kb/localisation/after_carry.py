@@ -26,6 +26,7 @@ from utak.kb.localisation.propose.larger_object import larger_objects
 from utak.kb.localisation.propose.parted_object import parted_objects
 from utak.kb.localisation.score import (
     Judgement,
+    LookedFrom,
     SearchBudget,
     choose,
     consistent_ends,
@@ -34,6 +35,7 @@ from utak.kb.localisation.score import (
     propose_earlier_motions,
     propose_frame,
     residual_at,
+    with_others,
 )
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.patch import patch_of_polygon
@@ -44,6 +46,16 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn."""
+    judged = _explain_carry(state, surprise, held, motion)
+    end = predicted_outcome(state.place, held.polygon, motion)
+    carried = held.moved(end.polygon, held.slack, end.degrees, commanded=True)
+    after = replace(surprise, held_objects={**state.held_objects, held.name: carried})
+    looked_from = [LookedFrom(surprise, [state.place]), LookedFrom(after, [end.place], end)]
+    return judged._replace(explanation=with_others(state, surprise, judged.explanation, looked_from))
+
+
+def _explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
+    """Return the explanation chosen for the observation after a push or a turn, if nothing else moved things."""
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
     budget = SearchBudget(state.search_count)

@@ -29,6 +29,7 @@ from utak.kb.localisation.propose.blocked import has_whole_way, possible_ends
 from utak.kb.localisation.propose.origin import blocked_walks_with_origin
 from utak.kb.localisation.score import (
     Judgement,
+    LookedFrom,
     SearchBudget,
     choose,
     consistent_ends,
@@ -67,7 +68,7 @@ def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, 
         return judged
     places = [*observation_places(ends.predicted), *ends.blocked]
     surprise = state.surprise(command, ranges)
-    return judged._replace(explanation=with_others(state, surprise, judged.explanation, places))
+    return judged._replace(explanation=with_others(state, surprise, judged.explanation, [LookedFrom(surprise, places)]))
 
 
 class _WalkExplainer:

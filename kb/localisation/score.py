@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
+from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
 from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
 from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
@@ -15,12 +16,13 @@ from utak.kb.localisation.propose import blocked
 from utak.kb.localisation.propose.earlier_motion import (
     ReestimatedMotion,
     reestimate_motions,
+    reestimate_slips,
     reestimate_with_origin,
 )
 from utak.kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
 from utak.kb.localisation.propose.lifted import weighed_with_lifting
 from utak.kb.localisation.propose.others import propose_changes
-from utak.kb.localisation.state import MAX_RESIDUAL, TrackerState
+from utak.kb.localisation.state import TrackerState
 from utak.kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
@@ -53,6 +55,23 @@ class SearchBudget:
         found = propose()
         self.spent += not found
         return found
+
+
+class LookedFrom(NamedTuple):
+    """The places from which an observation may come, once others moved things."""
+
+    surprise: Surprise  # what is in hand lies where a motion took it, if there was one
+    places: Sequence[Position]  # the likeliest first, map frame
+    outcome: CarryOutcome | None = None  # of that motion
+
+    def changes(self) -> list[Explanation]:
+        """Return explanations by which others moved things, but not what the robot moved just then."""
+        found = propose_changes(self.surprise, self.places)
+        if self.outcome is None:
+            return found
+        in_hand = self.surprise.in_hand
+        others = (one for one in found if one.change is not None and in_hand not in one.change.gone)
+        return [one._replace(outcome=self.outcome) for one in others]
 
 
 class Judgement(NamedTuple):
@@ -179,24 +198,29 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
 
 
 def with_others(
-    state: TrackerState, surprise: Surprise, chosen: Explanation, places: Sequence[Position]
+    state: TrackerState, surprise: Surprise, chosen: Explanation, looked_from: Sequence[LookedFrom]
 ) -> Explanation:
     """Return the choice between an explanation and what others may have done, if it explains badly."""
-    # places : where the look may have been made if others moved things, the likeliest first
-    if not _explains_badly(state, chosen):
+    if not (chosen.unexplained >= MIN_UNEXPLAINED or _slipped_far(chosen)):
         return chosen
-    explanations = [chosen, *propose_changes(surprise, places)]
+    slipped = [_earlier_slip(state, one) for one in reestimate_slips(surprise, state.earlier)]
+    chosen = choose(state, [chosen, *slipped])
+    # Whose motions slip cannot tell its own slips from what others do.
+    if state.slipped or chosen in slipped:
+        return chosen
+    changes = [one for entry in looked_from for one in entry.changes()]
+    if state.held_objects:  # what the robot moved itself may lie a little otherwise; what is gone does not
+        changes = [one for one in changes if one.change is not None and one.change.gone and not one.residual]
     # Who was put elsewhere sees nothing as expected: no less than what shows by itself that localisation has failed.
-    may_be_lifted = chosen.unexplained >= MAX_RESIDUAL or _slipped_far(chosen)
-    return choose(state, weighed_with_lifting(surprise, explanations, may_be_lifted))
+    may_be_lifted = chosen.unexplained >= state.max_residual or (_slipped_far(chosen) and not state.held_objects)
+    return choose(state, weighed_with_lifting(surprise, [chosen, *changes], may_be_lifted))
 
 
-def _explains_badly(state: TrackerState, explanation: Explanation) -> bool:
-    """Return whether an explanation costs more than what others may have done, by kb/asp/accommodation.lp."""
-    # Whose motions slip cannot tell its own slips from what others do; what it moved itself may lie a little otherwise.
-    if state.slipped or state.held_objects:
-        return False
-    return explanation.unexplained >= MIN_UNEXPLAINED or _slipped_far(explanation)
+def _earlier_slip(state: TrackerState, motion: ReestimatedMotion) -> Explanation:
+    """Return the explanation that an earlier motion slipped, and the newest one went as commanded."""
+    walk, one = motion
+    distance = math.hypot(*walk.correction.shift)
+    return Explanation("slipped", one.place, one.frame, 0, distance, one.outcome, state.hypotheses, walk)
 
 
 def _slipped_far(explanation: Explanation) -> bool:

@@ -150,9 +150,13 @@ class TrackerState:
     @property
     def lost(self) -> bool:
         """Return whether localisation has failed: observation after observation contradicts what is believed."""
+        return sum(self.residuals) >= self.max_residual and sum(residual > 0 for residual in self.residuals) > 1
+
+    @property
+    def max_residual(self) -> int:
+        """Return from how many residual fields on localisation has failed."""
         moved = any(held.proven for held in self.held_objects.values())
-        limit = MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
-        return sum(self.residuals) >= limit and sum(residual > 0 for residual in self.residuals) > 1
+        return MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
 
     @property
     def spread(self) -> float:
@@ -172,13 +176,19 @@ class TrackerState:
     def sure(self) -> bool:
         """Return whether what the counts settle is beyond doubt."""
         along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
-        settled = not (self.shaken or any(map(self._elsewhere_likely, self.motions)))
+        settled = not (self.shaken or self._askew_since_lift or any(map(self._elsewhere_likely, self.motions)))
         return settled and (along or len(self.hypotheses) == 1)
 
     @property
     def shaken(self) -> bool:
         """Return whether observations ever contradicted each other, or a motion ever ended beside its predicted end."""
         return self.slipped or self.occupancy.overruled > 0
+
+    @property
+    def _askew_since_lift(self) -> bool:
+        """Return whether any look since the robot was put somewhere may have been made in another square."""
+        looks = self.observations[max(self.lifted_at) :] if any(self.place_error) else ()
+        return any(len(self.places_near(self.frame.place_from_utak(*look.place))) > 1 for look in looks)
 
     def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
         """Return whether a motion may well have ended in another square than believed, by the observation after it."""

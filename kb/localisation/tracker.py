@@ -23,11 +23,20 @@ from utak.kb.localisation.after_carry import (
 from utak.kb.localisation.after_walk import DeadReckoning, explain_walk
 from utak.kb.localisation.field_account import Accommodation, account_for_fields
 from utak.kb.localisation.hypotheses.explanation import Explanation, TableChange
-from utak.kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, OriginBox, Position
-from utak.kb.localisation.hypotheses.recognition import narrowed, recognise
+from utak.kb.localisation.hypotheses.frames import (
+    ALL_HYPOTHESES,
+    FieldRanges,
+    Observation,
+    OriginBox,
+    Position,
+    observation_squares,
+)
+from utak.kb.localisation.hypotheses.recognition import half_cell, narrowed, place_of, recognise, told_by_contact
+from utak.kb.localisation.hypotheses.reestimation import WalkCorrection
 from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     MotionHypothesis,
+    add,
     blocked_ends,
     entered_square,
     observation_places,
@@ -89,13 +98,29 @@ class Tracker:
         found = recognise(former.occupancy, state.looks) if is_known else None
         if found is None:
             return None
-        self.state = former
-        self._put_elsewhere(found.error)
         looked = state.observations[-len(state.looks) :]  # since a map begun anew when lost, the newest alone
-        for look, observation in zip(state.looks, looked, strict=True):
-            place = found.place[0] + look.away[0] - away[0], found.place[1] + look.away[1] - away[1]
-            clashes = residual_at(self.state, observation.ranges, place, self.state.held_objects.values())
-            lifted = Explanation("lifted", place, former.frame, clashes, 1.0)
+        ways = [(look.away[0] - away[0], look.away[1] - away[1]) for look in state.looks]
+        self.state = former
+
+        def clashes(point: Position) -> int:
+            """Return how many fields of all looks contradict the map if the newest was made at a point."""
+            return sum(
+                residual_at(former, one.ranges, add(point, way), former.held_objects.values())
+                for one, way in zip(looked, ways, strict=True)
+            )
+
+        squares = {point: tuple(map(_square_of, (add(point, way) for way in ways))) for point in found.points}
+        against = {one: clashes(point) for point, one in reversed(squares.items())}
+        fitting = [point for point in found.points if against[squares[point]] == min(against.values())]
+        chosen = [point for point in fitting if squares[point] == squares[fitting[0]]]
+        place, _ = place_of(chosen, half_cell(state.looks))
+        middle, (west, south, east, north) = place_of(fitting, half_cell(state.looks))
+        dx, dy = middle[0] - place[0], middle[1] - place[1]
+        self._put_elsewhere((west + dx, south + dy, east + dx, north + dy))
+        for way, observation in zip(ways, looked, strict=True):
+            there = add(place, way)
+            residual = residual_at(self.state, observation.ranges, there, self.state.held_objects.values())
+            lifted = Explanation("lifted", there, former.frame, residual, 1.0)
             accommodated = self._integrate(lifted, observation.ranges)
         return accommodated
 
@@ -186,8 +211,24 @@ class Tracker:
         clashes = [residual_at(state, ranges, place, held) for place in near]
         fitting = [place for place, many in zip(near, clashes, strict=True) if many == min(clashes)]
         place, error = narrowed(centre, state.place_error, fitting)
+        if explanation.how == "blocked":
+            place, error = told_by_contact(explanation.place, place, error)
         self.state = replace(state, place_error=error)
+        self._shift_since_lift((place[0] - centre[0], place[1] - centre[1]))
         return explanation._replace(place=place)
+
+    def _shift_since_lift(self, shift: Position) -> None:
+        """Believe in `state` that all looks since the robot was put somewhere were made elsewhere, by a shift."""
+        state = self.state
+        if not any(shift):
+            return
+        since = WalkCorrection(max(state.lifted_at), state.frame.to_utak(*shift))
+        observations = tuple(since.observations(state.observations))
+        before, now = (observation_squares(state.frame, these) for these in (state.observations, observations))
+        self.state = state = replace(state, observations=observations)
+        if (before != now).any():
+            held_objects = state.held_objects.values()
+            self.state = _remapped(state, remap(state.frame, state.frame, observations, held_objects))
 
     def _unexplained(self, explanation: Explanation, ranges: FieldRanges) -> Accommodation:
         """Return the account of an observation that is not integrated, since the robot does not know where it is."""
@@ -357,6 +398,10 @@ def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
     if under.occupancy is not state.occupancy:
         state = replace(state, blocked_squares=frozenset(), suspected_squares=frozenset(), completions=None)
     return replace(state, occupancy=under.occupancy, held_objects=dict(under.held_objects))
+
+
+def _square_of(place: Position) -> Square:
+    return math.floor(place[0]), math.floor(place[1])
 
 
 def _standing_place(state: TrackerState, place: Position) -> Position:

@@ -220,7 +220,9 @@ def _turned(start: XY, end: XY, node: Node) -> float:
 def _attained(why: str, turn: StageTurn) -> Decision:
     """Return `done`; the verdict `limit` where a goal rests on where the robot woke, and it was lost since then."""
     model = turn.situation.model
-    resting = [str(goal) for goal in turn.stage.own if rests_on_waking(goal)]
+    # Where a robot was lifted to, its first room is not known, either.
+    own = [goal for goal in turn.stage.own if rests_on_waking(goal) or (model.elsewhere and goal.name in ORIGIN_GOALS)]
+    resting = [str(goal) for goal in own]
     if not resting or not model.anew:
         return done(why)
     doubt = f"it cannot be told whether {' and '.join(resting)} hold{'s' * (len(resting) == 1)}: the robot was lost"

@@ -74,7 +74,7 @@ class Explanation(NamedTuple):
     @property
     def remaps(self) -> bool:
         """Return whether the frame, or where earlier observations were made, is another one than believed."""
-        return self.how in ("turned", "misled", "lost", "anew")
+        return self.how in ("turned", "misled", "lost", "anew") or self.reestimated is not None
 
     @property
     def met_known(self) -> bool:

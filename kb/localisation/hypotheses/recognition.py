@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from utak.geometry.counts.retina import FIELDS, RETINA_REACH
 from utak.geometry.kernels.arrays import Bools, Longs
 from utak.kb.localisation.hypotheses.frames import FieldRanges, OriginBox, Position
+from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
@@ -43,8 +44,17 @@ class Look(NamedTuple):
 class Recognised(NamedTuple):
     """A place on a known map where all looks fit."""
 
-    place: Position  # where the newest look was made, (x, y) in squares, map frame
+    place: Position  # where the newest look was made, (x, y) in squares, map frame: the middle of `points`
     error: OriginBox  # how far it may truly lie from there: west, south, east, north, in squares
+    points: tuple[Position, ...]  # the middles of the cells of SUBSQUARES in which it may lie, the likeliest first
+
+
+def place_of(points: Sequence[Position], half: float) -> tuple[Position, OriginBox]:
+    """Return the middle of the box about cells of `half` a side, and how far it reaches: west, south, east, north."""
+    first, last = np.min(points, 0), np.max(points, 0)
+    middle = (first + last) / 2
+    (west, south), (east, north) = (first - half - middle).tolist(), (last + half - middle).tolist()
+    return (float(middle[0]), float(middle[1])), (west, south, east, north)
 
 
 class KnownMap:
@@ -156,13 +166,16 @@ def recognise(occupancy: OccupancyMap, looks: Sequence[Look]) -> Recognised | No
     which, rows, columns = np.nonzero(totals > best - MIN_LEAD)
     sub = np.array(offsets)[which]
     points = np.stack([columns + sub[:, 0] + occupancy.west, rows + sub[:, 1] + occupancy.south], 1)
-    first, last = points.min(0), points.max(0)
-    if (last - first).max() >= 1.0:
+    if np.ptp(points, axis=0).max() >= 1.0:
         return None
-    half = 0.5 / SUBSQUARES if len(looks) > 1 else 0.5
-    middle = (first + last) / 2
-    (west, south), (east, north) = (first - half - middle).tolist(), (last + half - middle).tolist()
-    return Recognised((float(middle[0]), float(middle[1])), (west, south, east, north))
+    ordered = points[np.argsort(-totals[which, rows, columns], kind="stable")].tolist()
+    half = half_cell(looks)
+    return Recognised(*place_of(ordered, half), tuple((x, y) for x, y in ordered))
+
+
+def half_cell(looks: Sequence[Look]) -> float:
+    """Return half the side of the cells to which looks tell a place: a square by one alone."""
+    return 0.5 / SUBSQUARES if len(looks) > 1 else 0.5
 
 
 def _is_known(scores: Scores) -> Bools:
@@ -217,3 +230,14 @@ def narrowed(place: Position, error: OriginBox, fitting: Sequence[Position]) -> 
         return fitting[0], (0.0, 0.0, 0.0, 0.0)
     middle = (west + east) / 2, (south + north) / 2
     return middle, (west - middle[0], south - middle[1], east - middle[0], north - middle[1])
+
+
+def told_by_contact(contact: Position, place: Position, error: OriginBox) -> tuple[Position, OriginBox]:
+    """Return a place known within an error, and that error, once a motion was stopped at a grid line."""
+    (x, y), (west, south, east, north) = place, error
+    at_column, at_row = (abs(v - round(v)) <= 2 * LINE_DISTANCE for v in contact)
+    if at_column:
+        x, west, east = contact[0], 0.0, 0.0
+    if at_row:
+        y, south, north = contact[1], 0.0, 0.0
+    return (x, y), (west, south, east, north)

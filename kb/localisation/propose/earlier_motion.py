@@ -22,6 +22,7 @@ from utak.kb.localisation.hypotheses.frames import (
     frames_to_try,
     observation_squares,
 )
+from utak.kb.localisation.hypotheses.recognition import places_within
 from utak.kb.localisation.hypotheses.reestimation import (
     ReestimatedWalk,
     WalkCorrection,
@@ -30,8 +31,14 @@ from utak.kb.localisation.hypotheses.reestimation import (
     remap_if_consistent,
 )
 from utak.kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
-from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
-from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from utak.kb.localisation.hypotheses.walk_outcomes import (
+    LINE_DISTANCE,
+    MotionHypothesis,
+    add,
+    observation_places,
+    slipped_ends,
+)
+from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf, count_clashes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
@@ -105,6 +112,12 @@ def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) 
     return sorted(found, key=lambda one: not one.walk.contact_known)
 
 
+def reestimate_slips(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+    """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
+    tried = (motion for motion in reversed(motions) if _has_known_pose(motion, surprise))
+    return [one for motion in tried for one in _slips(surprise, motion)]
+
+
 def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
     """Return other ends, with another frame origin, of the newest carrying motion that explains everything so."""
     # Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
@@ -148,6 +161,38 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
         if not what_if.residual:
             walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
             yield ReestimatedMotion(walk, what_if)
+
+
+def _slips(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+    """Yield ends whole squares beside the commanded end of one motion, with which no observation is contradicted."""
+    frame, first = surprise.frame, surprise.prefixes.first(motion.number)
+    if first.contradicted:  # whatever came of the motion
+        return
+    end = add(surprise.observations[motion.number - 1].place, motion.shift)
+    for place in slipped_ends(frame.place_from_utak(*end)):
+        corrected, correction = _corrected(surprise, motion, WalkEnd(frame.place_to_utak(*place), 1))
+        under = remap_if_consistent(
+            frame, corrected.observations, corrected.held_objects.values(), corrected.unsettled_discs, begun=first
+        )
+        if under is None or under.residual:
+            continue
+        supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
+        for what_if in _newest_after_slip(supposed):
+            if not what_if.residual:
+                yield ReestimatedMotion(ReestimatedWalk(exact_hypothesis(frame), correction, False, 0), what_if)
+                break
+
+
+def _newest_after_slip(supposed: Surprise) -> Iterator[WhatIf]:
+    """Yield what contradicts the newest observation after a slip, the likeliest place first."""
+    frame, held_objects = supposed.frame, supposed.held_objects.values()
+    if supposed.carried is not None:
+        yield supposed.evaluate_frame(frame, supposed.hypotheses, only_whether=True)
+        return
+    # Where in its square the robot was after the slip is not known.
+    for place in places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5)):
+        clashes = count_clashes(frame, supposed.occupancy, held_objects, place, supposed.ranges)
+        yield WhatIf(frame, supposed.hypotheses, place, None, clashes, searched=False)
 
 
 def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:

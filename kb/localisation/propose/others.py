@@ -28,9 +28,9 @@ def propose_changes(surprise: Surprise, places: Iterable[Position]) -> list[Expl
     """Return explanations by which others changed the table, one for each place where the look may have been made."""
     there = list(dict.fromkeys(places))
     found = [_changed_at(surprise, there[0])]
-    if found[0] is None or found[0].residual:  # the motion may have ended early, where one act of others explains all
+    if found[0] is None or found[0].residual:  # the motion may have ended early, where others explain all
         early_ends = (_changed_at(surprise, place) for place in there[1:])
-        found += [one if one and not one.residual and one.distance == 1 else None for one in early_ends]
+        found += [one if one and not one.residual else None for one in early_ends]
     there = there[: len(found)]
     early = (math.dist(place, there[0]) for place in there)
     # A motion that ended early is as unlikely as without others: kb/asp/accommodation.lp
