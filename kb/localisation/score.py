@@ -65,13 +65,11 @@ class LookedFrom(NamedTuple):
     outcome: CarryOutcome | None = None  # of that motion
 
     def changes(self) -> list[Explanation]:
-        """Return explanations by which others moved things, but not what the robot moved just then."""
-        found = propose_changes(self.surprise, self.places)
-        if self.outcome is None:
-            return found
-        in_hand = self.surprise.in_hand
-        others = (one for one in found if one.change is not None and in_hand not in one.change.gone)
-        return [one._replace(outcome=self.outcome) for one in others]
+        """Return explanations by which others moved things, what is in hand if it was not moved just then."""
+        found, in_hand = propose_changes(self.surprise, self.places), self.surprise.carried and self.surprise.in_hand
+        changed = [(one, one.change.gone) for one in found if one.change is not None]
+        taken = in_hand is not None and self.outcome is None
+        return [one._replace(outcome=self.outcome) for one, gone in changed if (in_hand in gone) == taken]
 
 
 class Judgement(NamedTuple):

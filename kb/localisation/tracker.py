@@ -113,10 +113,8 @@ class Tracker:
         against = {one: clashes(point) for point, one in reversed(squares.items())}
         fitting = [point for point in found.points if against[squares[point]] == min(against.values())]
         chosen = [point for point in fitting if squares[point] == squares[fitting[0]]]
-        place, _ = place_of(chosen, half_cell(state.looks))
-        middle, (west, south, east, north) = place_of(fitting, half_cell(state.looks))
-        dx, dy = middle[0] - place[0], middle[1] - place[1]
-        self._put_elsewhere((west + dx, south + dy, east + dx, north + dy))
+        place, error = place_of(chosen, fitting, half_cell(state.looks))
+        self._put_elsewhere(error)
         for way, observation in zip(ways, looked, strict=True):
             there = add(place, way)
             residual = residual_at(self.state, observation.ranges, there, self.state.held_objects.values())

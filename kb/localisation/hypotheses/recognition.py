@@ -44,17 +44,16 @@ class Look(NamedTuple):
 class Recognised(NamedTuple):
     """A place on a known map where all looks fit."""
 
-    place: Position  # where the newest look was made, (x, y) in squares, map frame: the middle of `points`
+    place: Position  # where the newest look was made, (x, y) in squares, map frame: the likeliest
     error: OriginBox  # how far it may truly lie from there: west, south, east, north, in squares
     points: tuple[Position, ...]  # the middles of the cells of SUBSQUARES in which it may lie, the likeliest first
 
 
-def place_of(points: Sequence[Position], half: float) -> tuple[Position, OriginBox]:
-    """Return the middle of the box about cells of `half` a side, and how far it reaches: west, south, east, north."""
-    first, last = np.min(points, 0), np.max(points, 0)
-    middle = (first + last) / 2
-    (west, south), (east, north) = (first - half - middle).tolist(), (last + half - middle).tolist()
-    return (float(middle[0]), float(middle[1])), (west, south, east, north)
+def place_of(likely: Sequence[Position], points: Sequence[Position], half: float) -> tuple[Position, OriginBox]:
+    """Return the middle of the likely points, and how far cells of `half` a side about all of them reach from it."""
+    middle = (np.min(likely, 0) + np.max(likely, 0)) / 2
+    (west, south), (east, north) = np.min(points, 0) - half - middle, np.max(points, 0) + half - middle
+    return (float(middle[0]), float(middle[1])), (float(west), float(south), float(east), float(north))
 
 
 class KnownMap:
@@ -166,11 +165,11 @@ def recognise(occupancy: OccupancyMap, looks: Sequence[Look]) -> Recognised | No
     which, rows, columns = np.nonzero(totals > best - MIN_LEAD)
     sub = np.array(offsets)[which]
     points = np.stack([columns + sub[:, 0] + occupancy.west, rows + sub[:, 1] + occupancy.south], 1)
-    if np.ptp(points, axis=0).max() >= 1.0:
+    if np.ptp(points, axis=0).max() > 1.0:  # more than two squares side by side
         return None
-    ordered = points[np.argsort(-totals[which, rows, columns], kind="stable")].tolist()
-    half = half_cell(looks)
-    return Recognised(*place_of(ordered, half), tuple((x, y) for x, y in ordered))
+    ordered = [(x, y) for x, y in points[np.argsort(-totals[which, rows, columns], kind="stable")].tolist()]
+    likely = [(x, y) for x, y in ordered if (math.floor(x), math.floor(y)) == tuple(map(math.floor, ordered[0]))]
+    return Recognised(*place_of(likely, ordered, half_cell(looks)), tuple(ordered))
 
 
 def half_cell(looks: Sequence[Look]) -> float:
