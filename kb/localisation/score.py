@@ -188,7 +188,7 @@ def prior_cost(state: TrackerState, angle: int) -> float:
 
 def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable[str] = ()) -> Explanation:
     """Return the cheapest explanation by kb/asp/accommodation.lp; of those that cost the same the first."""
-    known = [f"trust({0 if state.off_middle else state.confirmations})", *["slips"] * state.slipped]
+    known = [f"trust({0 if state.off_middle else state.confirmations})", *["slips"] * state.slips]
     known += ["off_middle"] * state.off_middle
     known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]
     known += ["proven"] * (state.in_hand is not None and state.held_objects[state.in_hand].proven)
@@ -204,7 +204,7 @@ def with_others(
     slipped = [_earlier_slip(state, one) for one in reestimate_slips(surprise, state.earlier)]
     chosen = choose(state, [chosen, *slipped])
     # Whose motions slip cannot tell its own slips from what others do.
-    if state.slipped or chosen in slipped:
+    if state.slips or chosen in slipped:
         return chosen
     changes = [one for entry in looked_from for one in entry.changes()]
     if state.held_objects:  # what the robot moved itself may lie a little otherwise; what is gone does not

@@ -54,7 +54,9 @@ class TrackerState:
     # Open squares (not settled as free or occupied) one of which probably stopped a held object, map frame
     suspected_squares: frozenset[Square] = frozenset()
     search_count: int = 0  # number of slow proposals that found nothing or searched all frames. It limits further ones.
-    slipped: bool = False  # whether any motion ended beside its predicted end
+    slipped: bool = False  # whether any motion ended beside its predicted end, on this map
+    # Whether motions did so on an earlier map, or that contradicted itself, which the robot's own motions explain
+    unsteady: bool = False
     # The last straight motions, oldest first. Each may have ended otherwise than believed.
     motions: tuple[MotionHypothesis, ...] = ()
     # All objects that were ever held, by name, map frame
@@ -178,6 +180,11 @@ class TrackerState:
         along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
         settled = not (self.shaken or self._askew_since_lift or any(map(self._elsewhere_likely, self.motions)))
         return settled and (along or len(self.hypotheses) == 1)
+
+    @property
+    def slips(self) -> bool:
+        """Return whether motions of this robot end beside their predicted ends, as it knows from any map."""
+        return self.slipped or self.unsteady
 
     @property
     def shaken(self) -> bool:

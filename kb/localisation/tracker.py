@@ -74,7 +74,7 @@ class Tracker:
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
         begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-        return Tracker(replace(begun, former=state.former))
+        return Tracker(replace(begun, former=state.former, unsteady=True))
 
     def elsewhere(self) -> "Tracker":
         """Return a tracker of a robot that others put somewhere: it begins anew, and keeps what was believed before."""
@@ -82,7 +82,7 @@ class Tracker:
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations))
         begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-        return Tracker(replace(begun, former=state.former or state))
+        return Tracker(replace(begun, former=state.former or state, unsteady=state.slips))
 
     def recognise(self, command: Command) -> Accommodation | None:
         """Look for the newest observations on the map of before; go on with that if they fit at one place of it."""
