@@ -67,24 +67,28 @@ class Knowledge:
             self._grasp(command.direction)
         accommodated = self.tracker.accommodate(command, impression)
         if accommodated.explanation.how == "lost":
-            return self._begin_elsewhere(command, impression)
+            return self._begin_elsewhere(command, impression, self.tracker.elsewhere())
         if self.memory.lost and self.memory.in_hand is None:
-            return self.begin_anew(impression, lost=True)
+            return self._begin_elsewhere(command, impression, self.tracker.anew(lost=True))
         return self._update(impression, self._recognised(command) or accommodated)
 
-    def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodation]:
+    def begin_anew(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
         """Forget all but the track, and begin a new map with the newest impression."""
         self.tracker = self.tracker.anew()
         self._names.forget()
         woken = self.tracker.wake(impression)
-        woken = woken._replace(explanation=woken.explanation._replace(how="lost" if lost else "anew"))
-        return self._update(impression, woken)
+        return self._update(impression, woken._replace(explanation=woken.explanation._replace(how="anew")))
 
-    def _begin_elsewhere(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodation]:
-        """Begin a new map with the newest impression, and keep the old one: others put the robot somewhere."""
-        if self.memory.former is None:
+    def _begin_elsewhere(
+        self, command: Command, impression: Impression, begun: Tracker
+    ) -> tuple[WorldModel, Accommodation]:
+        """Begin a new map with the newest impression, and keep the old one: the robot does not know where it is."""
+        held, former = self.memory.held_objects, begun.state.former
+        if self.memory.former is None and former is not None:
             self._former_names = deepcopy(self._names)
-        self.tracker = self.tracker.elsewhere()
+            moved = {name: len(load.possible.squares()) for name, load in held.items()}
+            self._former_names.miss({name: size for name, size in moved.items() if name not in former.held_objects})
+        self.tracker = begun
         self._names.forget()
         woken = self.tracker.wake(impression)
         woken = woken._replace(explanation=woken.explanation._replace(how="lost"))
@@ -191,7 +195,8 @@ class Knowledge:
             unsettled_seams=regions.unsettled_seams,
             lost=memory.lost,
             anew=bool(memory.been),
-            elsewhere=memory.former is not None,
+            elsewhere=memory.former is not None and not memory.slips,
+            interrupted=bool(memory.been or memory.lifted_at),
             shaken=memory.shaken,
             contradicted=accommodated.explanation.unexplained > 0,
         )

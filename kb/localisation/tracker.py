@@ -67,14 +67,15 @@ class Tracker:
 
     # -- what others call ------------------------------------------------------------------------
 
-    def anew(self) -> "Tracker":
+    def anew(self, lost: bool = False) -> "Tracker":
         """Return a tracker that begins anew at the believed place, with an empty map and all frame hypotheses."""
         # The believed frame and place stay, and the track is kept, so that the robot knows about where it came from;
-        # the newest observation is left out of it, for it is made again.
+        # the newest observation is left out of it, for it is made again. Who is lost may recognise the map of before.
         state = self.state
+        former = state.former or (_before_contradictions(state) if lost else None)
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
         begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-        return Tracker(replace(begun, former=state.former, unsteady=True))
+        return Tracker(replace(begun, former=former, unsteady=True))
 
     def elsewhere(self) -> "Tracker":
         """Return a tracker of a robot that others put somewhere: it begins anew, and keeps what was believed before."""
@@ -92,15 +93,17 @@ class Tracker:
         first, newest = state.observations[0].place, state.observations[-1]
         away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
         self.state = state = replace(
-            state, looks=(*state.looks, look_at(former.surprise(command, newest.ranges), away))
+            # Whose motions slip does not know how its looks lie to each other.
+            state,
+            looks=(*(() if state.slips else state.looks), look_at(former.surprise(command, newest.ranges), away)),
         )
         is_known = len(former.observations) >= MIN_KNOWN_LOOKS and not state.held_objects
         found = recognise(former.occupancy, state.looks) if is_known else None
-        if found is None:
+        if found is None or (state.slips and len(set(map(_square_of, found.points))) > 1):  # later looks would not tell
             return None
         looked = state.observations[-len(state.looks) :]  # since a map begun anew when lost, the newest alone
         ways = [(look.away[0] - away[0], look.away[1] - away[1]) for look in state.looks]
-        self.state = former
+        self.state = replace(former, unsteady=former.unsteady or state.unsteady)
 
         def clashes(point: Position) -> int:
             """Return how many fields of all looks contradict the map if the newest was made at a point."""
@@ -114,12 +117,12 @@ class Tracker:
         fitting = [point for point in found.points if against[squares[point]] == min(against.values())]
         chosen = [point for point in fitting if squares[point] == squares[fitting[0]]]
         place, error = place_of(chosen, fitting, half_cell(state.looks))
-        self._put_elsewhere(error)
+        self._put_elsewhere((0.0, 0.0, 0.0, 0.0) if state.slips else error)
         for way, observation in zip(ways, looked, strict=True):
             there = add(place, way)
             residual = residual_at(self.state, observation.ranges, there, self.state.held_objects.values())
-            lifted = Explanation("lifted", there, former.frame, residual, 1.0)
-            accommodated = self._integrate(lifted, observation.ranges)
+            recognised = Explanation("slipped" if state.slips else "lifted", there, former.frame, residual, 1.0)
+            accommodated = self._integrate(recognised, observation.ranges)
         return accommodated
 
     def _put_elsewhere(self, error: OriginBox) -> None:
@@ -389,6 +392,20 @@ class Tracker:
             place=_standing_place(state, explanation.place),
         )
         return Accommodation(explanation, fields)
+
+
+def _before_contradictions(state: TrackerState) -> TrackerState | None:
+    """Return a state without the last looks that contradict it, and the things moved since; None for too few looks."""
+    sound = next((n for n, residual in enumerate(state.residuals) if residual), len(state.residuals))
+    observations = state.observations[: len(state.observations) - len(state.residuals) + sound]
+    if len(observations) < MIN_KNOWN_LOOKS:
+        return None
+    under = remap(state.frame, state.frame, observations, state.held_objects.values())
+    lay = {pose.name: pose.middle for pose in observations[-1].moved}
+    now = {name: object_pose(held, state.frame).middle for name, held in state.held_objects.items()}
+    still = {name: under.held_objects[name] for name, place in now.items() if lay.get(name) == place}
+    there = _remapped(state, under._replace(held_objects=still))
+    return replace(there, observations=observations, motions=(), residuals=(), in_hand=None)
 
 
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:

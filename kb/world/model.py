@@ -110,6 +110,7 @@ class WorldModel:
     unsettled_seams: tuple[Bools, ...] = ()
     lost: bool = False  # Whether localisation failed: the last impressions agree with no belief
     anew: bool = False  # Whether the robot has forgotten its map and begun a new one
+    interrupted: bool = False  # Whether its track has a gap: for a while it did not know where it was, or was lifted
     elsewhere: bool = False  # Whether others put the robot somewhere, and it has not found yet where on its map that is
     shaken: bool = False  # Whether an impression contradicted another one, or a motion ended beside its predicted place
     contradicted: bool = False  # Whether some fields of this impression agree with nothing that is believed

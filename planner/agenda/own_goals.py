@@ -33,7 +33,7 @@ from utak.planner.navigation.encircle import encircled_point, encircling_routes,
 from utak.planner.screen.moves import next_move
 from utak.planner.sights.viewpoints import TO_REACH
 from utak.planner.skills.into_corner import IntoCorner, halt_beside_walls
-from utak.planner.stages import ORIGIN_GOALS, is_at_start, rests_on_waking
+from utak.planner.stages import ORIGIN_GOALS, is_at_start
 from utak.planner.subgoal_kind import SubgoalKind
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.setting import DestinationFunction
@@ -221,9 +221,14 @@ def _attained(why: str, turn: StageTurn) -> Decision:
     """Return `done`; the verdict `limit` where a goal rests on where the robot woke, and it was lost since then."""
     model = turn.situation.model
     # Where a robot was lifted to, its first room is not known, either.
-    own = [goal for goal in turn.stage.own if rests_on_waking(goal) or (model.elsewhere and goal.name in ORIGIN_GOALS)]
-    resting = [str(goal) for goal in own]
-    if not resting or not model.anew:
+    resting = [
+        str(goal)
+        for goal in turn.stage.own
+        if (model.interrupted and goal.name in TRACK_GOALS)
+        or (model.anew and is_at_start(goal))
+        or (model.elsewhere and goal.name in ORIGIN_GOALS)
+    ]
+    if not resting:
         return done(why)
     doubt = f"it cannot be told whether {' and '.join(resting)} hold{'s' * (len(resting) == 1)}: the robot was lost"
     return Decision(None, f"{doubt} since it woke", TaskVerdict.LIMIT)

@@ -157,7 +157,7 @@ def _doubt(model: WorldModel, region: Any) -> float:
 def _robot_doubt(fact: Fact, situation: Situation) -> str:
     """Return why the robot may have touched the region of avoid(utak, "WKT"); "" when it surely did not."""
     model, region = situation.model, region_of(fact)
-    if model.anew:
+    if model.interrupted:
         return f"it cannot be told whether {fact} holds: the robot was lost"
     track = _line([model.frame.place_to_utak(x, y) for x, y in situation.track])
     if track.intersects(region):
