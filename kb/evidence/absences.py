@@ -99,6 +99,8 @@ class AbsenceExplainer:
                 yield call, f"shape({node},{shape},{_number_or(arguments[2], sure)})", number
         elif name == "bound" and len(arguments) == 2:
             yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
+        elif name in ("may_be", "joined") and len(arguments) == 3:
+            yield from self._calls("chances", f"{name}({','.join(arguments[:2])},{_number_or(arguments[2], 50)})", step)
         elif name in ("door", "connects", "width") and not _is_door(arguments[0], now):
             yield from self._opening(step)
             call, number = self._newest("rooms", step, "neck(")
