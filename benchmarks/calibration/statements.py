@@ -13,7 +13,7 @@ from shapely import LineString, Point
 
 from benchmarks.calibration.figures import RECTANGLE
 from benchmarks.calibration.truth import FLOOR, VERGE, NodeTruth, TableTruth
-from benchmarks.calibration.whereabouts import Alternatives
+from benchmarks.calibration.whereabouts import TrueAlternatives
 from benchmarks.worlds.furniture import OUTLINE_SHAPES
 from benchmarks.worlds.odd.houses import COMPASS
 from utak.geometry.kernels.arrays import XY, Square
@@ -34,7 +34,7 @@ class Moment(NamedTuple):
     nodes: Mapping[str, NodeTruth]  # what each believed object is
     squares: Mapping[str, frozenset[Square]]  # of each node, table frame
     truth: TableTruth
-    alternatives: Alternatives
+    alternatives: TrueAlternatives
 
     def place(self, east: int, north: int) -> XY:
         """Return a point, hundredths of squares in the robot frame, as a point of the table, in squares.
@@ -214,5 +214,5 @@ def moment_of(robot: Any, facts: tuple[str, ...], truth: TableTruth, frame: Any)
     model, decider = robot.model, robot.decider
     squares = {node.name: frozenset(frame.square(*square) for square in node.patch.squares()) for node in model.objects}
     nodes = {name: truth.of(there) for name, there in squares.items()}
-    alternatives = Alternatives(decider.task, model, decider.rooms, frame, truth, nodes)
+    alternatives = TrueAlternatives(decider.task, model, decider.rooms, frame, truth, nodes)
     return Moment(facts, nodes, squares, truth, alternatives)

@@ -11,14 +11,14 @@ from benchmarks.calibration.figures import class_of
 from benchmarks.calibration.truth import VERGE, NodeTruth, TableTruth
 from benchmarks.harness.beliefs import TableFrame
 from utak.geometry.kernels.arrays import Square
+from utak.kb.objects.parts import parts_of
 from utak.kb.task.task import SHAPE_SUBCLASSES, Task
-from utak.kb.world.pieces import outline_parts
 from utak.kb.world.rooms import Rooms
 
 TAKEN_SHARE = 0.5  # of the squares of a thing: where so many were taken for verge, it was
 
 
-class Alternatives(NamedTuple):
+class TrueAlternatives(NamedTuple):
     """One moment of a run, as far as what may be is compared with the truth."""
 
     task: Task
@@ -110,7 +110,7 @@ class Alternatives(NamedTuple):
         found = self.model.object(node)
         squares = found.patch.squares()
         if number:
-            parts = outline_parts(found.polygon)
+            parts = parts_of(found.polygon)
             middles = {square: Point(square[0] + 0.5, square[1] + 0.5) for square in squares}
             squares = {
                 square

@@ -81,8 +81,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
     command = (
-        f"python -m benchmarks.priors{' --places' * given.places} --worlds {given.worlds} --seed {given.seed} --max-steps {given.max_steps} "
-        f"--parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
+        f"python -m benchmarks.priors{' --places' * given.places} --worlds {given.worlds} --seed {given.seed} "
+        f"--max-steps {given.max_steps} --parts {given.parts} "
+        f"--noise {','.join(f'{noise:g}' for noise in given.noise)}"
     )
     if given.places:
         command += f" --seconds {given.seconds}"

@@ -50,22 +50,15 @@ MISFIT = bins(0, 1, 3)
 LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
 OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 26, 101)), strict=True))
 # Of a place where a thing may be (kb/asp/chances.lp), by its case: bins of its measure.
-PLACE = {
-    "likely": bins(0, 1, 10, 50),
-    "other": bins(0, 1),
+PLACE_MEASURE = {
+    "likely": bins(0, 1, 10),
+    "other": WHOLE,
     "open": bins(0, 5, 15, 30),
-    "closed": bins(0, 5),
+    "closed": WHOLE,
     "door": WHOLE,
     "verge": WHOLE,
 }
-# Of pieces that touch, by case and colours felt: bins of the confidence in the class of their outline, percent.
-JOINED = {
-    ("parts", "unfelt"): bins(0, 25, 50, 75, 90),
-    ("parts", "same"): WHOLE,
-    ("parts", "different"): WHOLE,
-    ("nodes", "unfelt"): WHOLE,
-    ("nodes", "same"): WHOLE,
-    ("nodes", "different"): WHOLE,
-}
+# Of pieces that touch, by what was felt on them: bins of the confidence in the class of their outline, percent.
+JOINED = {"unfelt": bins(0, 75), "same": WHOLE}
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one

@@ -17,7 +17,7 @@ from benchmarks.priors.bins import (
     NONE_MISFIT,
     OBJECT_MASS,
     OPENNESS,
-    PLACE,
+    PLACE_MEASURE,
     WHOLE,
     Bin,
     bin_of,
@@ -107,16 +107,16 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
 def counted_places(places: Iterable[PlaceSeen]) -> Iterator[Counted]:
     """Yield how many places of each case were where the thing was; those that a claim is against are left out."""
     seen = [place for place in places if not place.against]
-    for case, measures in PLACE.items():
+    for case, measures in PLACE_MEASURE.items():
         for measure in measures:
             there = [place for place in seen if place.case == case and measure.holds(place.measure)]
             yield Counted("counted_place", (case, measure), sum(place.true for place in there), len(there))
 
 
 def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:
-    """Yield how many pairs of pieces that touch were one thing, by case, colours and the class of their outline."""
+    """Yield how many pairs of pieces that touch were one thing, by what was felt and the class of their outline."""
     seen = list(pieces)
-    for (case, colours), shares in JOINED.items():
+    for felt, shares in JOINED.items():
         for share in shares:
-            there = [one for one in seen if (one.case, one.colours) == (case, colours) and share.holds(one.share)]
-            yield Counted("counted_joined", (case, colours, share), sum(one.one for one in there), len(there))
+            there = [piece for piece in seen if piece.felt == felt and share.holds(piece.share)]
+            yield Counted("counted_joined", (felt, share), sum(piece.one for piece in there), len(there))

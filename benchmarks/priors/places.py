@@ -21,8 +21,7 @@ class PlaceSeen(NamedTuple):
 class PieceSeen(NamedTuple):
     """Two pieces that touch."""
 
-    case: str
-    colours: str
+    felt: str
     share: int  # percent
     one: bool  # whether they are one thing
 
@@ -53,9 +52,9 @@ def pieces_seen(look: LookedAt) -> Iterator[PieceSeen]:
     whole = {arguments[0] for name, arguments in given if name == "whole"}
     for name, arguments in given:
         if name == "touch" and arguments[0] not in whole:
-            one, other, case, colours, share = arguments
+            one, other, felt, share = arguments
             if (true := look.moment.alternatives.is_one_thing(one, other)) is not None:
-                yield PieceSeen(case, colours, int(share), true)
+                yield PieceSeen(felt, int(share), true)
 
 
 def _given(look: LookedAt) -> list[tuple[str, tuple[str, ...]]]:

@@ -45,10 +45,10 @@ WORDS = {
         "of 1000 places of case {K} with a measure of {L} to {U}, {W} were where the thing was",
     ),
     "counted_joined": (
-        "K, F, L, U, W",
-        "Of 1000 pairs of pieces of case K that touch, with colours F and an outline that is of its class with L to U "
-        "percent, W were one thing.",
-        "of 1000 pairs of pieces of case {K} that touch, with colours {F} and {L} to {U} percent for their outline, "
+        "F, L, U, W",
+        "Of 1000 pairs of parts of an outline that touch, with colours F (same or unfelt) and L to U percent for the "
+        "class of the outline, W were one thing.",
+        "of 1000 pairs of parts that touch, with colours {F} and {L} to {U} percent for the class of their outline, "
         "{W} were one thing",
     ),
 }

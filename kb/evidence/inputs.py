@@ -19,7 +19,7 @@ NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
 }
-PLACE_FACTS = {"o": "kind(", "r": "unseen(", "d": "door("}  # by the letter of a place: the fact that tells of it
+FACT_OF_PLACE = {"o": "kind(", "r": "unseen(", "d": "door("}  # by the letter of a place: the fact that tells of it
 AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to; the record says what and why
 # What encodings of the planner are given that was not measured: bounds, what is offered, asked, or came of something.
 DECIDED_INPUTS = frozenset({
@@ -199,7 +199,7 @@ def _chance_reasons(
         nodes = dict.fromkeys(piece.partition("_")[0] for piece in arguments[: 2 if name == "touch" else 1])
         return [squares_reason(record, step, node) for node in nodes]
     place = arguments[1] if name == "place" else arguments[0]
-    facts = [fact for fact in record.steps[step].long_facts if fact.startswith(PLACE_FACTS.get(place[:1], "-"))]
+    facts = [fact for fact in record.steps[step].long_facts if fact.startswith(FACT_OF_PLACE.get(place[:1], "-"))]
     about = [fact for fact in facts if atom_parts(fact)[1][0] == place]
     return [reason for fact in about[:1] if (reason := fact_reason(fact, step)) is not None]
 

@@ -1,4 +1,4 @@
-"""What may be besides the tree of nodes, by kb/asp/chances.lp: where things are that nobody saw, what is one thing.
+"""Chances of what may be: where things are that the task names and nobody saw, which pieces are one (chances.lp).
 
 Geometry measures; the encoding makes chances of it, by what was counted.
 """
@@ -13,9 +13,9 @@ from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
 from utak.kb.task.binding import Reconciliation
 from utak.kb.task.described import claim_facts
+from utak.kb.task.pieces import touching_pieces
 from utak.kb.task.task import Task
 from utak.kb.world.model import VERGE_NODE, Node, WorldModel
-from utak.kb.world.pieces import touching_pieces
 from utak.kb.world.place_names import WAKING_ROOM
 from utak.kb.world.rooms import NO_ROOM, Rooms
 
@@ -25,8 +25,8 @@ CLAIMED_PLACES = ("claim", "related")  # claims, of which those of `in` tell of 
 
 def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
     """Return may_be/3 and joined/3 as facts without full stops."""
-    facts = [*place_facts(task, model, rooms, reconciled), *(piece.fact for piece in touching_pieces(model))]
-    facts += [f"whole({piece.one})" for piece in touching_pieces(model) if piece.whole]
+    facts = [*place_facts(task, model, rooms, reconciled)]
+    facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
     return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
 
 
@@ -56,10 +56,8 @@ def _likeness(node: Node, parameter: str, task: Task) -> int:
         name, *values = (str(part) for part in (claim.fact.name, *claim.fact.args))
         if values[0] != parameter or name not in ("shape", "colour"):
             continue
-        if name == "shape":
-            held = node.shape.get(values[1], 0)
-        else:
-            held = 100 if node.colour in (None, values[1]) else 0
+        likely = node.shape if name == "shape" else {node.colour or values[1]: 100}  # unfelt: any colour
+        held = likely.get(values[1], 0)
         share *= max(held, 100 - claim.confidence) / 100
     return round(100 * share)
 

@@ -20,6 +20,7 @@ from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.localisation.field_account import Accommodation
 from utak.kb.mapping.occupancy import OPEN
+from utak.kb.objects.parts import parts_of
 from utak.kb.reasoning.interfaces import WORLD_FACTS_THERE
 from utak.kb.reasoning.user_rules import predicates_read
 from utak.kb.world.chances import Chances
@@ -27,7 +28,6 @@ from utak.kb.world.corners import Corner
 from utak.kb.world.evidence import evidence
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
 from utak.kb.world.pathgraph import pathgraph_facts
-from utak.kb.world.pieces import outline_parts
 from utak.kb.world.rooms import NO_ROOM, Door, Rooms
 
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
@@ -184,7 +184,7 @@ def _part_facts(node: Node, model: WorldModel) -> Iterator[str]:
     if node.polygon is None:
         return
     middle = np.array(model.frame.place_to_utak(*node.patch.centre))
-    for number, part in enumerate(outline_parts(node.polygon), 1):
+    for number, part in enumerate(parts_of(node.polygon), 1):
         name = f"{node.name}_{number}"
         ring = np.column_stack(model.frame.place_to_utak(*np.array(part.exterior.coords).T))
         east, north = model.frame.place_to_utak(part.centroid.x, part.centroid.y) - middle
