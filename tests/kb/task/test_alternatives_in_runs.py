@@ -57,6 +57,19 @@ def test_one_place_holds_in_each_possible_world() -> None:
     assert acts["may_be(x,r1)"] == ("look(r1)",)
 
 
+def test_rules_of_users_are_evidence_of_places(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text(":- true(may_be(X, verge)).     % nothing is taken for a wall\n")
+    facts = episode("go_to_square_unseen")[0].world.facts
+    with QueryEngine() as engine:
+        engine.use_rules([str(rules)])
+        found = {fact: least for fact, least, _, _ in engine.worlds(facts, 1).open}
+    places = stated("go_to_square_unseen", "may_be")[0]
+    rest = 100 - places["x", "verge"]
+    assert "may_be(x,verge)" not in found
+    assert found["may_be(x,r1)"] == pytest.approx(places["x", "r1"] / rest, abs=0.002)
+
+
 def test_why_a_thing_may_be_somewhere_is_told_and_why_not() -> None:
     questions, name = asked("go_to_square_unseen"), "go_to_square_unseen"
     percent = stated(name, "may_be")[0]["x", "r1"]
