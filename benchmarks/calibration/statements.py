@@ -191,10 +191,6 @@ def _joined(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
     return moment.alternatives.is_one_thing(*arguments[:2])
 
 
-def _plug(moment: Moment, arguments: tuple[str, ...]) -> bool:
-    return moment.alternatives.is_thing(arguments[0])
-
-
 STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("kind", 3): Row(_kind, 2, True),
     ("shape", 3): Row(_shape, 2, True),
@@ -209,7 +205,6 @@ STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("corner", 4): Row(_corner, 3),
     ("may_be", 3): Row(_may_be, 2, True),
     ("joined", 3): Row(_joined, 2),
-    ("plug", 2): Row(_plug, 1),
 }
 CLASS_NAMES = OUTLINE_SHAPES
 

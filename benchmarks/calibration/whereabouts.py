@@ -12,7 +12,6 @@ from benchmarks.calibration.truth import VERGE, NodeTruth, TableTruth
 from benchmarks.harness.beliefs import TableFrame
 from utak.geometry.kernels.arrays import Square
 from utak.kb.objects.parts import parts_of
-from utak.kb.task.pieces import unfelt_stretches
 from utak.kb.task.task import SHAPE_SUBCLASSES, Task
 from utak.kb.world.rooms import Rooms
 
@@ -104,11 +103,6 @@ class TrueAlternatives(NamedTuple):
         """Return whether two pieces are one thing; None where one of them is none."""
         first, second = (self.truth.of(self._piece(name)).thing for name in (one, other))
         return None if first is None or second is None else first == second
-
-    def is_thing(self, stretch: str) -> bool:
-        """Return whether a stretch of what bounds the floor is a thing."""
-        mask = next(one.mask for one in unfelt_stretches(self.model, self.rooms) if one.name == stretch)
-        return self.truth.of(self._squares(mask)).kind == "object"
 
     def _piece(self, name: str) -> set[Square]:
         """Return the squares of an object, or those that are nearest to a part of its outline."""

@@ -19,16 +19,9 @@ from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.runs import LookedAt, numbers, watched
 from benchmarks.calibration.statements import statements
 from benchmarks.harness.judging import CHECKOUT
-from benchmarks.priors.count import (
-    Counted,
-    counted_classes,
-    counted_kinds,
-    counted_pieces,
-    counted_places,
-    counted_stretches,
-)
+from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_pieces, counted_places
 from benchmarks.priors.measures import FitSeen, RegionSeen, fits_seen, regions_seen
-from benchmarks.priors.places import PieceSeen, PlaceSeen, StretchSeen, pieces_seen, places_seen, stretches_seen
+from benchmarks.priors.places import PieceSeen, PlaceSeen, pieces_seen, places_seen
 from benchmarks.priors.written import text
 from utak.simulator.run.warming import warm_all
 
@@ -50,12 +43,11 @@ class PlacesMoment(NamedTuple):
 
     places: tuple[PlaceSeen, ...]
     pieces: tuple[PieceSeen, ...]
-    stretches: tuple[StretchSeen, ...]
 
 
 def places_noted(look: LookedAt) -> PlacesMoment:
     """Return what is counted of a moment about places and pieces."""
-    return PlacesMoment(tuple(places_seen(look)), tuple(pieces_seen(look)), tuple(stretches_seen(look)))
+    return PlacesMoment(tuple(places_seen(look)), tuple(pieces_seen(look)))
 
 
 def noted(look: LookedAt) -> CountedMoment:
@@ -116,21 +108,16 @@ def places_written(moments: Sequence[PlacesMoment], command: str, worlds: int) -
     """Return the file of priors of places and pieces that some moments give."""
     places = [place for moment in moments for place in moment.places]
     pieces = [piece for moment in moments for piece in moment.pieces]
-    stretches = [stretch for moment in moments for stretch in moment.stretches]
-    sizes = f"{len(places)} places, {len(pieces)} pairs, {len(stretches)} stretches"
-    counted = [*counted_places(places), *counted_pieces(pieces), *counted_stretches(stretches)]
-    told = [command, f"{worlds} worlds of all kinds, {len(moments)} moments, {sizes}"]
-    return text(counted, None, told, "chances.lp")
+    counts = (
+        f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} places, {len(pieces)} pairs of pieces"
+    )
+    return text([*counted_places(places), *counted_pieces(pieces)], None, [command, counts], "chances.lp")
 
 
 def _read_places(line: str) -> PlacesMoment:
     """Return a moment of places and pieces from its line of JSON."""
-    places, pieces, stretches = json.loads(line)
-    return PlacesMoment(
-        tuple(PlaceSeen(*one) for one in places),
-        tuple(PieceSeen(*one) for one in pieces),
-        tuple(StretchSeen(*one) for one in stretches),
-    )
+    places, pieces = json.loads(line)
+    return PlacesMoment(tuple(PlaceSeen(*one) for one in places), tuple(PieceSeen(*one) for one in pieces))
 
 
 def _read(line: str) -> CountedMoment:

@@ -60,7 +60,5 @@ PLACE_MEASURE = {
 }
 # Of pieces that touch, by what was felt on them: bins of the confidence in the class of their outline, percent.
 JOINED = {"unfelt": bins(0, 75), "same": WHOLE}
-# Of a stretch of what bounds the floor, by its case: bins of its size, squares.
-PLUG = {"parting": bins(0, 9, 25), "sticking": bins(0, 9, 25)}
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one

@@ -18,13 +18,12 @@ from benchmarks.priors.bins import (
     OBJECT_MASS,
     OPENNESS,
     PLACE_MEASURE,
-    PLUG,
     WHOLE,
     Bin,
     bin_of,
 )
 from benchmarks.priors.measures import FitSeen, RegionSeen
-from benchmarks.priors.places import PieceSeen, PlaceSeen, StretchSeen
+from benchmarks.priors.places import PieceSeen, PlaceSeen
 
 THOUSAND = 1000
 MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
@@ -121,12 +120,3 @@ def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:
         for share in shares:
             there = [piece for piece in seen if piece.felt == felt and share.holds(piece.share)]
             yield Counted("counted_joined", (felt, share), sum(piece.one for piece in there), len(there))
-
-
-def counted_stretches(stretches: Iterable[StretchSeen]) -> Iterator[Counted]:
-    """Yield how many stretches of what bounds the floor were things, by case and size."""
-    seen = list(stretches)
-    for case, sizes in PLUG.items():
-        for size in sizes:
-            there = [one for one in seen if one.case == case and size.holds(one.size)]
-            yield Counted("counted_plug", (case, size), sum(one.thing for one in there), len(there))

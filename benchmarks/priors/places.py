@@ -57,22 +57,6 @@ def pieces_seen(look: LookedAt) -> Iterator[PieceSeen]:
                 yield PieceSeen(felt, int(share), true)
 
 
-class StretchSeen(NamedTuple):
-    """A stretch of what bounds the floor that was never felt."""
-
-    case: str  # parting or sticking
-    size: int  # squares
-    thing: bool  # whether it is one
-
-
-def stretches_seen(look: LookedAt) -> Iterator[StretchSeen]:
-    """Yield the stretches that may be things."""
-    for name, arguments in _given(look):
-        if name == "unfelt":
-            stretch, case, size = arguments
-            yield StretchSeen(case, int(size), look.moment.alternatives.is_thing(stretch))
-
-
 def _given(look: LookedAt) -> list[tuple[str, tuple[str, ...]]]:
     """Return the facts that chances.lp was given at this moment, as name and arguments."""
     found = next((facts for name, facts in look.decisions if name == "chances"), ())

@@ -44,12 +44,6 @@ WORDS = {
         "Of 1000 places of case K with a measure of L to U, W were where the thing was that the task names.",
         "of 1000 places of case {K} with a measure of {L} to {U}, {W} were where the thing was",
     ),
-    "counted_plug": (
-        "K, L, U, W",
-        "Of 1000 stretches of what bounds the floor that were never felt, of case K (parting or sticking) with L to U "
-        "squares, W were things.",
-        "of 1000 stretches that were never felt, of case {K} with {L} to {U} squares, {W} were things",
-    ),
     "counted_joined": (
         "F, L, U, W",
         "Of 1000 pairs of parts of an outline that touch, with colours F (same or unfelt) and L to U percent for the "

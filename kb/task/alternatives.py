@@ -13,7 +13,7 @@ from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
 from utak.kb.task.binding import Reconciliation
 from utak.kb.task.described import claim_facts
-from utak.kb.task.pieces import touching_pieces, unfelt_stretches
+from utak.kb.task.pieces import touching_pieces
 from utak.kb.task.task import Task
 from utak.kb.world.model import VERGE_NODE, Node, WorldModel
 from utak.kb.world.place_names import WAKING_ROOM
@@ -24,13 +24,10 @@ CLAIMED_PLACES = ("claim", "related")  # claims, of which those of `in` tell of 
 
 
 def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
-    """Return may_be/3, joined/3, plug/2 and stretch/5 as facts without full stops."""
+    """Return may_be/3 and joined/3 as facts without full stops."""
     facts = [*place_facts(task, model, rooms, reconciled)]
     facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
-    stretches = [*unfelt_stretches(model, rooms)]
-    facts += [stretch.fact for stretch in stretches]
-    found = [str(atom) for atom in solve([CHANCES], facts) or ()] if facts else []
-    return (*found, *(stretch.place(model) for stretch in stretches))
+    return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
 
 
 def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> Iterator[str]:

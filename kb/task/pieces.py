@@ -1,8 +1,7 @@
-"""Pieces that may be one thing or two, and stretches of what bounds the floor that may be things.
+"""Pieces that touch, and may be one thing or two: the parts of an outline, which is cut at its inner corners.
 
-An outline is cut at its inner corners: geometry names the seams (kb.objects.parts). Objects that touch are no such
-pieces: they were told apart by what was felt, or by what moved. Which chances there are, kb/asp/chances.lp says by what
-was counted.
+Geometry names the seams (kb.objects.parts). Which chance two parts have to be one thing, kb/asp/chances.lp says by what
+was counted. Objects that touch are no such pieces: they were told apart by what was felt, or by what moved.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,12 +13,10 @@ import numpy as np
 import shapely
 from shapely import Polygon
 
-from utak.geometry.kernels.arrays import XY, Bools
-from utak.geometry.raster.components import components, with_edge_neighbours
+from utak.geometry.kernels.arrays import XY
 from utak.kb.objects.parts import parts_of
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
-from utak.kb.world.model import Node, WorldModel, hundredths
-from utak.kb.world.rooms import Rooms
+from utak.kb.world.model import Node, WorldModel
 
 MIN_BORDER = 1e-6  # squares: pieces with a shorter border meet in a point
 FELT_DISTANCE = 1.0  # squares: what was felt on a square further from an outline is not on it; convention
@@ -40,40 +37,6 @@ class Touching(NamedTuple):
         """The same for kb/asp/chances.lp, without full stops."""
         touch = f"touch({self.one},{self.other},{'same' if self.felt else 'unfelt'},{self.share})"
         return (touch, f"whole({self.one})") if self.whole else (touch,)
-
-
-class Stretch(NamedTuple):
-    """A stretch of what bounds the floor that was never felt, and may be a thing."""
-
-    name: str  # w1, w2, ... from the south-west on; another one may have the name after the next impression
-    mask: Bools  # its squares, on the arrays of the view
-    parts: bool  # whether it lies between two floors, or two rooms, as what stands in a doorway does
-
-    @property
-    def fact(self) -> str:
-        """The same for kb/asp/chances.lp, without a full stop."""
-        return f"unfelt({self.name},{'parting' if self.parts else 'sticking'},{int(self.mask.sum())})"
-
-    def place(self, model: WorldModel) -> str:
-        """Return its containing rectangle as stretch/5, without a full stop."""
-        rows, columns = np.nonzero(self.mask)
-        west, south, east, north = columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
-        (x, y), (z, w) = model.place_to_utak(west, south), model.place_to_utak(east, north)
-        sides = min(x, z), min(y, w), max(x, z), max(y, w)
-        return f"stretch({self.name},{','.join(str(hundredths(side)) for side in sides)})"
-
-
-def unfelt_stretches(model: WorldModel, rooms: Rooms) -> Iterator[Stretch]:
-    """Yield the stretches of what bounds the floor that may be things."""
-    pieces = {piece.tobytes(): piece for piece in model.unfelt_pieces}  # some are found in several ways
-    if not pieces:
-        return
-    floors = components(model.space).labels
-    order = sorted(pieces.values(), key=lambda piece: (*np.argwhere(piece)[0].tolist(), int(piece.sum())))
-    for number, piece in enumerate(order, 1):
-        beside = with_edge_neighbours(piece) & ~piece
-        parts = any(len(np.unique(labels[beside & (labels > 0)])) > 1 for labels in (floors, rooms.labels))
-        yield Stretch(f"w{number}", piece, parts)
 
 
 @lru_cache(maxsize=1024)

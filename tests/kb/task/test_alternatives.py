@@ -16,7 +16,7 @@ from utak.kb.reasoning.query import worlds_request
 from utak.kb.reasoning.solver import solve
 from utak.kb.task.alternatives import CHANCES, alternatives
 from utak.kb.task.binding import reconcile
-from utak.kb.task.pieces import touching_pieces, unfelt_stretches
+from utak.kb.task.pieces import touching_pieces
 from utak.kb.task.task import task_from_texts
 from utak.kb.tracing.possible_worlds import likeliest_worlds
 from utak.kb.world.rooms import rooms_of
@@ -75,8 +75,15 @@ def test_chances_of_places_are_those_of_all_worlds(places: list[tuple[str, int]]
             assert found.get(f"{name}({','.join(arguments)})", 1.0) == pytest.approx(percent / 100, abs=ROUNDED)
 
 
-WALL, FLOOR = "bbbbbbbbbbbbb", "b...........b"
-ROWS = [WALL, FLOOR, "b.ggg.......b", "b.ggg...hhh.b", "b.......h...b", "b....U......b", WALL]
+ROWS = [
+    "bbbbbbbbbbbbb",
+    "b...........b",
+    "b.ggg.......b",
+    "b.ggg...hhh.b",
+    "b.......h...b",
+    "b....U......b",
+    "bbbbbbbbbbbbb",
+]
 
 
 def stated(start: str, goal: str = "at(utak, x).", rows: Sequence[str] = ROWS) -> list[str]:
@@ -113,23 +120,3 @@ def test_the_parts_of_an_outline_are_one_thing_as_often_as_was_counted() -> None
     assert not [*touching_pieces(replace(model, objects=(node,), felt={**felt, (-1, 1): "h"}))]
     whole = replace(model, objects=(replace(node, moved=True, whole=True),))
     assert next(touching_pieces(whole)).facts[1] == "whole(o1_1)"
-
-
-STUB = [WALL, "b....bb.....b", "b....bb.....b", *[FLOOR] * 3, "b....U......b", WALL]
-
-
-def test_what_sticks_out_of_the_bounds_may_be_a_thing_until_it_is_felt() -> None:
-    facts = stated("object(x). shape(x, square).", rows=STUB)
-    plugs = [fact for fact in facts if fact.startswith("plug(")]
-    assert [fact.partition(",")[0] for fact in plugs] == ["plug(w1"]
-    assert "stretch(w1,-50,350,150,550)" in facts  # two squares wide and high, the robot in the middle of its square
-    model = known_model(STUB)
-    felt = replace(model, felt={(0, 4): "b"})
-    assert [one.parts for one in unfelt_stretches(model, rooms_of(model))] == [False]
-    assert not [*unfelt_stretches(felt, rooms_of(felt))]
-
-
-def test_what_lies_between_two_floors_parts_them() -> None:
-    rows = [WALL, *["b....bbb....b"] * 3, "b....bbbU...b", *["b....bbb....b"] * 3, WALL]
-    model = known_model(rows)
-    assert [one.fact for one in unfelt_stretches(model, rooms_of(model))] == ["unfelt(w1,parting,21)"]
