@@ -310,9 +310,11 @@ PLAN_FACTS = frozenset(
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
+# What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
+MADE_LAST = frozenset({("may_be", 3), ("may_be", 2), ("joined", 3), ("joined", 2)})
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
 # nothing but the world model bind the task plan; elsewhere they would leave no answer.
-WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES)
+WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - MADE_LAST
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {

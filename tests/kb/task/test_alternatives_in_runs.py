@@ -7,6 +7,7 @@ import pytest
 
 import utak
 from utak.kb.language.atoms import atom_parts
+from utak.kb.reasoning.interfaces import MADE_LAST, WORLD_FACTS_THERE
 from utak.kb.reasoning.query import QueryEngine
 from utak.simulator.explaining.questions import Questions
 
@@ -68,6 +69,16 @@ def test_rules_of_users_are_evidence_of_places(tmp_path: Path) -> None:
     rest = 100 - places["x", "verge"]
     assert "may_be(x,verge)" not in found
     assert found["may_be(x,r1)"] == pytest.approx(places["x", "r1"] / rest, abs=0.002)
+
+
+def test_rules_of_users_read_them_in_queries_alone(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text("hidden_thing(X, R) :- may_be(X, R, C), room(R), C > 20.\n")
+    facts = episode("go_to_square_unseen")[0].world.facts
+    with QueryEngine() as engine:
+        engine.use_rules([str(rules)])
+        assert str(engine.ask(facts, "hidden_thing(x, r1)")) == "yes"
+    assert not MADE_LAST & WORLD_FACTS_THERE["task"]
 
 
 def test_why_a_thing_may_be_somewhere_is_told_and_why_not() -> None:
