@@ -173,8 +173,8 @@ class Robot:
         places = Places(self.decider.rooms, self.decider.corners)
         task = self.decider.task
         objects = (name for name in task.parameters if task.is_object(name) or name in task.described)
-        planned = self._planned_facts()
-        believed = belief(self.model, places, accommodated, self.decider.bound, objects, planned)
+        others = (*self.decider.alternatives, *self._planned_facts())
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects, others)
         believed |= self._journal.entry(decisions, self.knowledge.memory)
         return StepReport(command, impression, believed, why)
 

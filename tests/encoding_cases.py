@@ -13,7 +13,7 @@ from typing import NamedTuple
 import clingo
 import clingo.ast
 
-from utak.kb.reasoning.encodings import all_encodings, encoding_files
+from utak.kb.reasoning.encodings import SHARED_PARTS, all_encodings, encoding_files
 
 ROOT = Path(__file__).resolve().parent.parent
 ENCODINGS = all_encodings()
@@ -38,7 +38,7 @@ def case_file(encoding: Path) -> Path:
 
 def case_files(encoding: Path) -> tuple[Path, ...]:
     """Return the files of an encoding, with the priors of its cases."""
-    return tuple(CASE_PRIORS if path.stem == "priors" else path for path in encoding_files(encoding))
+    return tuple(CASE_PRIORS if path.stem in SHARED_PARTS else path for path in encoding_files(encoding))
 
 
 def case_text(encoding: Path) -> str:

@@ -116,8 +116,9 @@ def _decisions(
 
 def _look(dealt: DealtWorld, session: Session, decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> LookedAt:
     """Return the present moment of a run."""
-    world, model = dealt.world, session.robot.model  # type: ignore[attr-defined]
+    world, robot = dealt.world, session.robot
+    model = robot.model  # type: ignore[attr-defined]
     truth = TableTruth(dealt, dict(session.table.polygons), session.table.utak)
     frame = frame_of(model, truth, (world.utak.x, world.utak.y))
     facts = tuple(fact.rstrip(".") for fact in session.line["belief"]["facts"])
-    return LookedAt(moment_of(model, facts, truth, frame), model, frame, session.line["step"], decisions)
+    return LookedAt(moment_of(robot, facts, truth, frame), model, frame, session.line["step"], decisions)

@@ -13,6 +13,7 @@ from shapely import LineString, Point
 
 from benchmarks.calibration.figures import RECTANGLE
 from benchmarks.calibration.truth import FLOOR, VERGE, NodeTruth, TableTruth
+from benchmarks.calibration.whereabouts import TrueAlternatives
 from benchmarks.worlds.furniture import OUTLINE_SHAPES
 from benchmarks.worlds.odd.houses import COMPASS
 from utak.geometry.kernels.arrays import XY, Square
@@ -33,6 +34,7 @@ class Moment(NamedTuple):
     nodes: Mapping[str, NodeTruth]  # what each believed object is
     squares: Mapping[str, frozenset[Square]]  # of each node, table frame
     truth: TableTruth
+    alternatives: TrueAlternatives
 
     def place(self, east: int, north: int) -> XY:
         """Return a point, hundredths of squares in the robot frame, as a point of the table, in squares.
@@ -180,6 +182,15 @@ def _corner(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
     return bool((np.abs(best - (x, y)).max(axis=1) <= FURTHEST_CORNER_DISTANCE).any())
 
 
+def _may_be(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
+    place = moment.alternatives.place(arguments[0])
+    return None if place is None else place == arguments[1]
+
+
+def _joined(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
+    return moment.alternatives.is_one_thing(*arguments[:2])
+
+
 STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("kind", 3): Row(_kind, 2, True),
     ("shape", 3): Row(_shape, 2, True),
@@ -192,11 +203,16 @@ STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("width", 2): Row(_width_as_one),
     ("width", 4): Row(_width, 3),
     ("corner", 4): Row(_corner, 3),
+    ("may_be", 3): Row(_may_be, 2, True),
+    ("joined", 3): Row(_joined, 2),
 }
 CLASS_NAMES = OUTLINE_SHAPES
 
 
-def moment_of(model: Any, facts: tuple[str, ...], truth: TableTruth, frame: Any) -> Moment:
+def moment_of(robot: Any, facts: tuple[str, ...], truth: TableTruth, frame: Any) -> Moment:
     """Return a moment. frame : where the table lies in the map of the model, as `benchmarks.harness.beliefs` says."""
+    model, decider = robot.model, robot.decider
     squares = {node.name: frozenset(frame.square(*square) for square in node.patch.squares()) for node in model.objects}
-    return Moment(facts, {name: truth.of(there) for name, there in squares.items()}, squares, truth)
+    nodes = {name: truth.of(there) for name, there in squares.items()}
+    alternatives = TrueAlternatives(decider.task, model, decider.rooms, frame, truth, nodes)
+    return Moment(facts, nodes, squares, truth, alternatives)

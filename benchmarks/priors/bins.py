@@ -49,5 +49,16 @@ MISFIT = bins(0, 1, 3)
 # By the bin of misfit: those of the lead and of the open squares, fewer where few things fall.
 LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
 OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 26, 101)), strict=True))
+# Of a place where a thing may be (kb/asp/chances.lp), by its case: bins of its measure.
+PLACE_MEASURE = {
+    "likely": bins(0, 1, 10),
+    "other": WHOLE,
+    "open": bins(0, 5, 15, 30),
+    "closed": WHOLE,
+    "door": WHOLE,
+    "verge": WHOLE,
+}
+# Of pieces that touch, by what was felt on them: bins of the confidence in the class of their outline, percent.
+JOINED = {"unfelt": bins(0, 75), "same": WHOLE}
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one

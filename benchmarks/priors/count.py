@@ -10,17 +10,20 @@ from benchmarks.priors.bins import (
     BEHIND,
     CASES,
     EXTENT,
+    JOINED,
     LEAD,
     MASS,
     MISFIT,
     NONE_MISFIT,
     OBJECT_MASS,
     OPENNESS,
+    PLACE_MEASURE,
     WHOLE,
     Bin,
     bin_of,
 )
 from benchmarks.priors.measures import FitSeen, RegionSeen
+from benchmarks.priors.places import PieceSeen, PlaceSeen
 
 THOUSAND = 1000
 MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
@@ -99,3 +102,21 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
     for misfit in NONE_MISFIT:
         there = [fit for fit in wrong if misfit.holds(fit.fits[0][1])]
         yield Counted("counted_none", (misfit,), sum(fit.shape == NO_CLASS for fit in there), len(there))
+
+
+def counted_places(places: Iterable[PlaceSeen]) -> Iterator[Counted]:
+    """Yield how many places of each case were where the thing was; those that a claim is against are left out."""
+    seen = [place for place in places if not place.against]
+    for case, measures in PLACE_MEASURE.items():
+        for measure in measures:
+            there = [place for place in seen if place.case == case and measure.holds(place.measure)]
+            yield Counted("counted_place", (case, measure), sum(place.true for place in there), len(there))
+
+
+def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:
+    """Yield how many pairs of pieces that touch were one thing, by what was felt and the class of their outline."""
+    seen = list(pieces)
+    for felt, shares in JOINED.items():
+        for share in shares:
+            there = [piece for piece in seen if piece.felt == felt and share.holds(piece.share)]
+            yield Counted("counted_joined", (felt, share), sum(piece.one for piece in there), len(there))

@@ -39,6 +39,18 @@ WORDS = {
         "Of 1000 things whose first class leaves L to U squares wrong and is not the true one, W were of no class.",
         "of 1000 things whose first class leaves {L} to {U} squares wrong and is not the true one, {W} were of none",
     ),
+    "counted_place": (
+        "K, L, U, W",
+        "Of 1000 places of case K with a measure of L to U, W were where the thing was that the task names.",
+        "of 1000 places of case {K} with a measure of {L} to {U}, {W} were where the thing was",
+    ),
+    "counted_joined": (
+        "F, L, U, W",
+        "Of 1000 pairs of parts of an outline that touch, with colours F (same or unfelt) and L to U percent for the "
+        "class of the outline, W were one thing.",
+        "of 1000 pairs of parts that touch, with colours {F} and {L} to {U} percent for the class of their outline, "
+        "{W} were one thing",
+    ),
 }
 CONSTANTS = {  # by case: numbers that Python reads, percent
     "cut": (
@@ -49,12 +61,14 @@ CONSTANTS = {  # by case: numbers that Python reads, percent
 PRIORS_LINE_WIDTH = 118
 
 
-def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> str:
-    """Return the file of priors. told : how it was made, a line each."""
+def text(counted: Sequence[Counted], movable: Counted | None, told: Iterable[str], whole: str) -> str:
+    """Return a file of priors. told : how it was made, a line each. whole : of which encodings it is a part."""
+    what = (
+        f"How often alternatives were true, counted: what confidences are made of (a part of {whole}). No number here "
+        "is chosen: thousandths by Laplace's rule, (true + 1) / (counted + 2). After each row: true / counted."
+    )
     lines = [
-        "% How often alternatives were true, counted: what confidences are made of (a part of interpretation.lp and",
-        "% shapes.lp). No number here is chosen: thousandths by Laplace's rule, (true + 1) / (counted + 2). After each",
-        "% row: true / counted.",
+        *textwrap.wrap(what, PRIORS_LINE_WIDTH - 2, initial_indent="% ", subsequent_indent="% "),
         "",
         "% It was made so, and is made anew by the same command:",
         *(f"%     {line}" for line in told),
@@ -70,10 +84,13 @@ def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> s
     for row in counted:
         if row.predicate == "counted_object" and row.given[0] in CONSTANTS:
             lines += _constant(*CONSTANTS[str(row.given[0])], row)
-    about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
-    lines += _constant("untried_movable", about, movable)
-    lines += ["", "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
-    for predicate, (arguments, _, words) in WORDS.items():
+    if movable is not None:
+        about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
+        lines += _constant("untried_movable", about, movable)
+    lines = [*lines[: -1 if not lines[-1] else None], ""]
+    lines += ["% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
+    for predicate in dict.fromkeys(row.predicate for row in counted):
+        arguments, _, words = WORDS[predicate]
         lines += _wrapped(f"{predicate}({arguments})", words)
     return "\n".join(lines) + "\n"
 

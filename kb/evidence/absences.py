@@ -187,6 +187,18 @@ class AbsenceExplainer:
             because = f"no class of shapes was fitted to what is known of {thing}"
         elif name == "movable" and instead:
             because = "it would have to be moved, or seen not to move, for that; this is believed instead"
+        elif name == "may_be" and instead:
+            because = f"{thing} means nothing that was seen, and its places are counted otherwise: these are believed"
+        elif name == "may_be":
+            facts = self._facts.record.steps[step].facts
+            instead = tuple(
+                reason
+                for fact in facts
+                if fact.startswith(f"bound({thing},") and (reason := self._facts.reason(fact, step)) is not None
+            )
+            because = f"{thing} means something, which is there" if instead else f"the task names no object {thing}"
+        elif name == "joined" and not instead:
+            because = "no border that they have in common was measured, or they were felt in different colours"
         elif name in ("door", "connects", "width") and not instead:
             because = "doors are necks of the floor, by kb/asp/rooms.lp, and no neck was measured so far"
         elif instead:

@@ -107,6 +107,9 @@ class FactExplainer:
             return self._corner_reasons(arguments, step)
         if name == "movable":
             return self._movable_reasons(node, arguments[1], step)
+        if name in ("may_be", "joined"):
+            found = self.decision("chances", fact, step, oldest=step)
+            return [found] if found else []
         if name == "held":
             return self._grasp_reasons(node, step)
         if name == "segment":

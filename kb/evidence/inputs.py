@@ -14,11 +14,12 @@ from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
 FactReason = Callable[[str, int], Reason | None]  # from a fact and a step to its reason; None when it is not believed
-TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "kept"})  # what start.lp and goal.lp say
+TASK_INPUTS = frozenset({"wanted", "named", "claim", "claimed", "carried", "kept"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
 }
+FACT_OF_PLACE = {"o": "kind(", "r": "unseen(", "d": "door("}  # by the letter of a place: the fact that tells of it
 AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to; the record says what and why
 # What encodings of the planner are given that was not measured: bounds, what is offered, asked, or came of something.
 DECIDED_INPUTS = frozenset({
@@ -74,6 +75,8 @@ def _below(
         return _neck_reasons(record, given, arguments)
     if encoding == "corners":
         return _corner_reasons(record, step, arguments)
+    if encoding == "chances":
+        return _chance_reasons(record, step, name, arguments, fact_reason)
     if encoding == "accommodation":
         return [command_reason(record.steps[step])]
     if encoding == "reconciliation":
@@ -186,6 +189,19 @@ def _believed(record: Record, step: int, atom: str) -> list[str]:
 def _names(about: Any, arguments: tuple[str, ...]) -> bool:
     """Return whether what the record says of a candidate begins with the name of a goal, such as `g1: ...`."""
     return isinstance(about, str) and about.startswith(f"{arguments[0]}: ")
+
+
+def _chance_reasons(
+    record: Record, step: int, name: str, arguments: tuple[str, ...], fact_reason: FactReason
+) -> list[Reason]:
+    """Return the reasons of what chances.lp is given: facts about places, and the cells that show pieces."""
+    if name in ("touch", "whole"):
+        nodes = dict.fromkeys(piece.partition("_")[0] for piece in arguments[: 2 if name == "touch" else 1])
+        return [squares_reason(record, step, node) for node in nodes]
+    place = arguments[1] if name == "place" else arguments[0]
+    facts = [fact for fact in record.steps[step].long_facts if fact.startswith(FACT_OF_PLACE.get(place[:1], "-"))]
+    about = [fact for fact in facts if atom_parts(fact)[1][0] == place]
+    return [reason for fact in about[:1] if (reason := fact_reason(fact, step)) is not None]
 
 
 def _property_reasons(

@@ -195,6 +195,8 @@ DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world
 MAP_REGION_ARGUMENT = pattern_argument("region of the map", "part[0-9]+", "part1")  # a region that perception names
 # A region of the map, or a part of an object, such as a leg of an L.
 MAP_PART_ARGUMENT = pattern_argument("region or part", "part[0-9]+|o[0-9]+_[0-9]+", "part1 or o1_1")
+# Where a thing may be that the task names: an object, a room, a door, or the verge.
+WHEREABOUTS_ARGUMENT = pattern_argument("place of a thing", "[odr][0-9]+|verge", "r1")
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
 LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
@@ -292,6 +294,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("colour", 3): _property(COLOUR_ARGUMENT),
     ("movable", 2): _property(),
     ("adjacent", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(settled=frozenset({"org"}), symmetric=True),
+    ("joined", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(symmetric=True),
     ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),
     ("door", 2): _uncertain(DOOR_ARGUMENT),
     ("connects", 4): _uncertain(DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT),
@@ -314,6 +317,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
     ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
     ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, MEANT_ARGUMENT), Openness.UNBOUND),
+    ("may_be", 3): _uncertain(TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, open=Openness.NEVER),
     ("chance", 2): BeliefPredicate((STATEMENT_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.NEVER),
     ("open", 2): BeliefPredicate((STATEMENT_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.NEVER),
     ("known", 1): BeliefPredicate((STATEMENT_ARGUMENT,), Openness.NEVER),

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -22,6 +23,7 @@ class _Cut(NamedTuple):
     end: XY
 
 
+@lru_cache(maxsize=1024)  # an outline stays the same over many steps
 def parts_of(outline: Polygon) -> tuple[Polygon, ...]:
     """Return the convex parts of an outline, cut along lines that go on from its sides; () for one.
 

@@ -27,6 +27,7 @@ from utak.kb.language.vocabulary import (
     RESUMED_STEPS,
     SETTLING_STEPS,
     SHAPE_CLASSES,
+    TASK_PARAMETER_ARGUMENT,
     THING_ARGUMENT,
     Signature,
 )
@@ -83,9 +84,10 @@ STATED_FACTS: Forms = {
     name: declared.arguments[:-1] for (name, _), declared in BELIEF_PREDICATES.items() if declared.confident
 }
 FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
-EXCLUSIVE_QUESTIONS: Forms = dict.fromkeys(
-    ("kind", "shape", "room"), (THING_ARGUMENT,)
-)  # whose answers exclude each other
+EXCLUSIVE_QUESTIONS: Forms = {  # whose answers exclude each other
+    **dict.fromkeys(("kind", "shape", "room"), (THING_ARGUMENT,)),
+    "place": (TASK_PARAMETER_ARGUMENT,),
+}
 QUESTION_ARGUMENT = _compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
@@ -187,7 +189,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("carried", 1): (PARAMETER_ARGUMENT,),
         ("fixed", 1): (CANDIDATE_ARGUMENT,),
         ("moved", 1): (CANDIDATE_ARGUMENT,),
-        ("may_be", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
+        ("may_have", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
         ("planned", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("given_up", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("refused", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
@@ -308,9 +310,11 @@ PLAN_FACTS = frozenset(
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
+# What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
+MADE_LAST = frozenset({("may_be", 3), ("may_be", 2), ("joined", 3), ("joined", 2)})
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
 # nothing but the world model bind the task plan; elsewhere they would leave no answer.
-WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES)
+WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - MADE_LAST
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {

@@ -39,6 +39,9 @@ class Reconciliation(NamedTuple):
     facts: tuple[str, ...] = ()  # what the encoding was given
 
 
+NOTHING_RECONCILED = Reconciliation({}, (), (), ())
+
+
 def reconcile(
     task: Task,
     model: WorldModel,
@@ -124,4 +127,4 @@ def _node_facts(node: Node) -> Iterable[str]:
     if node.moved:
         yield f"moved({node.name})"
     for shape in possible_rectangle_shapes(node.polygon, node.insets):
-        yield f"may_be({node.name},shape,{shape})"
+        yield f"may_have({node.name},shape,{shape})"

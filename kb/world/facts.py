@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from shapely import Polygon
 
 from utak.geometry.kernels.arrays import Bools, Floats, Longs
 from utak.geometry.raster.contours import Ring, outline
@@ -53,12 +52,13 @@ def belief(
     accommodated: Accommodation,
     bound: Mapping[str, str],
     parameters: Iterable[str] = (),
-    planned: Iterable[str] = (),
+    others: Iterable[str] = (),
 ) -> dict[str, Any]:
-    """Return the `belief` of an episode's line, ready for JSON."""
+    """Return the `belief` of an episode's line, ready for JSON; `others`: facts of alternatives and of the plan."""
     cells = Counter(str(status) for status in accommodated.fields.status)
     east, north = model.frame.place_to_utak(*model.place)
-    facts = sorted(f"{fact}." for fact in (*model_facts(model, places), *binding_facts(bound, parameters), *planned))
+    stated = (*model_facts(model, places), *binding_facts(bound, parameters), *with_short_forms(others))
+    facts = sorted(f"{fact}." for fact in stated)
     return {
         "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
         "lattice": model.frame.angle,
@@ -89,7 +89,12 @@ def binding_facts(bound: Mapping[str, str], parameters: Iterable[str]) -> Iterat
 
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """Yield the world model, its rooms, doors and corners as facts without their full stops, with their short forms."""
-    for fact in _long_facts(model, places):
+    return with_short_forms(_long_facts(model, places))
+
+
+def with_short_forms(facts: Iterable[str]) -> Iterator[str]:
+    """Yield facts, and behind each that is known its short form, if it has one."""
+    for fact in facts:
         yield fact
         if fact.endswith(",100)") and fact.partition("(")[0] in SHORTENED and (short := short_form(fact)):
             yield short
@@ -179,7 +184,7 @@ def _part_facts(node: Node, model: WorldModel) -> Iterator[str]:
     if node.polygon is None:
         return
     middle = np.array(model.frame.place_to_utak(*node.patch.centre))
-    for number, part in enumerate(_outline_parts(node.polygon), 1):
+    for number, part in enumerate(parts_of(node.polygon), 1):
         name = f"{node.name}_{number}"
         ring = np.column_stack(model.frame.place_to_utak(*np.array(part.exterior.coords).T))
         east, north = model.frame.place_to_utak(part.centroid.x, part.centroid.y) - middle
@@ -188,12 +193,6 @@ def _part_facts(node: Node, model: WorldModel) -> Iterator[str]:
         yield f"part_of({name},{node.name})"
         yield f"offset({name},{hundredths(east)},{hundredths(north)})"
         yield f"rect({name},{','.join(str(hundredths(value)) for value in (*ring.min(0), *ring.max(0)))})"
-
-
-@lru_cache(maxsize=1024)
-def _outline_parts(outline: Polygon) -> tuple[Polygon, ...]:
-    """Return the parts of an outline, which stays the same over many steps."""
-    return parts_of(outline)
 
 
 def _region_facts(model: WorldModel) -> Iterator[str]:

@@ -18,12 +18,16 @@ from benchmarks.calibration.picture import picture
 from benchmarks.calibration.statements import HeldStatement, Moment, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
 from benchmarks.calibration.truth import TableTruth
+from benchmarks.calibration.whereabouts import TrueAlternatives
 from benchmarks.claims.asked import Asked, all_kinds
+from benchmarks.harness.beliefs import TableFrame
 from benchmarks.priors import __main__ as priors
 from benchmarks.priors.bins import ANY, EXTENT, MASS, WHOLE, Bin, bin_of, bins
 from benchmarks.priors.count import Counted, counted_classes, counted_kinds
 from benchmarks.priors.measures import FitSeen, RegionSeen
 from benchmarks.worlds.furniture import OUTLINE_SHAPES, outline
+from utak.kb.task.task import task_from_texts
+from utak.kb.world.rooms import Rooms
 
 
 @pytest.mark.parametrize("shape", OUTLINE_SHAPES)
@@ -46,6 +50,13 @@ def test_what_is_of_no_class_and_what_is_between_two_is_said() -> None:
 THING = SimpleNamespace(name="t1", colour="g", shape="square", polygon=box(3, 3, 6, 6), fixed=False)
 STONE = SimpleNamespace(name="p1", colour="h", shape="brick", polygon=box(8, 3, 10, 8), fixed=True)
 
+SQUARE = task_from_texts("object(x). shape(x, square).", "at(utak, x).")
+# The west of the table was seen, and taken for one room; of the bounds the south alone.
+SEEN = np.zeros((16, 20), np.int32)
+SEEN[2:14, 7:14] = 1
+MODEL = SimpleNamespace(view=SimpleNamespace(west=0, south=0), verge=np.arange(16)[:, None] + np.zeros((16, 20)) < 2)
+ROOMS = Rooms((), SEEN, np.zeros_like(SEEN, np.bool_))
+
 
 def moment(*facts: str, **nodes: tuple[int, int, int, int]) -> Moment:
     """Return a moment on a table of 20 x 16 squares. nodes : west, south, east, north of each, in squares."""
@@ -58,7 +69,10 @@ def moment(*facts: str, **nodes: tuple[int, int, int, int]) -> Moment:
         name: frozenset((x, y) for x in range(west, east) for y in range(south, north))
         for name, (west, south, east, north) in nodes.items()
     }
-    return Moment(facts, {name: truth.of(there) for name, there in squares.items()}, squares, truth)
+    nodes = {name: truth.of(there) for name, there in squares.items()}
+    return Moment(
+        facts, nodes, squares, truth, TrueAlternatives(SQUARE, MODEL, ROOMS, TableFrame(0, 0, 0), truth, nodes)
+    )
 
 
 def verdicts(found: Moment) -> dict[str, bool]:
@@ -93,6 +107,13 @@ def test_statements_are_compared_with_what_is_so() -> None:
         "adjacent(org,o1)": False,
         "adjacent(o1,o5,40)": False,
     }
+
+
+def test_where_a_thing_is_that_nobody_saw_is_compared_with_what_is_so() -> None:
+    facts = ("may_be(x,r1,70)", "may_be(x,o1,20)", "may_be(x,verge,10)")
+    assert verdicts(moment(*facts)) == dict(zip(facts, (True, False, False), strict=True))
+    assert verdicts(moment(*facts, o1=(3, 3, 6, 6))) == dict(zip(facts, (False, True, False), strict=True))
+    assert verdicts(moment("may_be(y,r1,70)")) == {}
 
 
 def test_doors_and_corners_are_found_where_they_are() -> None:

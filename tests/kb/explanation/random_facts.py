@@ -41,7 +41,7 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "wanted": (THINGS,), "named": (THINGS,), "claim": (THINGS, PROPERTIES, VALUES, (40, 100)),
         "candidate": (NODES, (15, 60, 95)), "has": (NODES, PROPERTIES, VALUES, (30, 99)),
         "settled": (NODES, PROPERTIES), "distance": (NODES, (3, 9)), "bound_before": (THINGS, NODES),
-        "carried": (THINGS,), "fixed": (NODES,), "moved": (NODES,), "may_be": (NODES, PROPERTIES, VALUES),
+        "carried": (THINGS,), "fixed": (NODES,), "moved": (NODES,), "may_have": (NODES, PROPERTIES, VALUES),
         "planned": (THINGS, NODES), "kept": (THINGS,), "given_up": (THINGS, NODES),
     },
     "rooms": {"neck": (NUMBERS, (50, 100), (100, 150, 300), (100, 300), (0, 90))},

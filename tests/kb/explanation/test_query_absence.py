@@ -19,11 +19,11 @@ near_thing(X) :- near(X, _), not held(X).
 lonely(X) :- object(X), not near_thing(X).
 square_in_hand(X) :- held(X), shape(X, square, C), C > 80.
 pair :- 2 <= #count { X : object(X) }.
-joined(X, Y) :- near(X, Y).
-joined(X, Z) :- joined(X, Y), near(Y, Z).
+linked(X, Y) :- near(X, Y).
+linked(X, Z) :- linked(X, Y), near(Y, Z).
 beyond(D) :- door(D), connects(D, r1, R), R != r1.
 """
-WANTED = ["near_thing(o1)", "lonely(o1)", "square_in_hand(o1)", "pair", "joined(o1,o2)", "beyond(d1)", "near(o1,o2)"]
+WANTED = ["near_thing(o1)", "lonely(o1)", "square_in_hand(o1)", "pair", "linked(o1,o2)", "beyond(d1)", "near(o1,o2)"]
 POOL = [
     "kind(o1,object,95)", "kind(o2,object,90)", "kind(o3,verge,99)", "offset(o1,100,200)", "offset(o2,300,400)",
     "held(o1)", "shape(o1,square,90)", "shape(o1,square,60)", "door(d1)", "connects(d1,r1,r2)", "room(r1)",

@@ -1,0 +1,63 @@
+"""Measures of where things may be and of pieces that touch, as kb/asp/chances.lp is given them, with what is true."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from benchmarks.calibration.runs import LookedAt
+from utak.kb.language.atoms import atom_parts
+
+
+class PlaceSeen(NamedTuple):
+    """A place where a thing may be that the task names and nobody saw."""
+
+    parameter: str
+    place: str
+    case: str
+    measure: int
+    against: int  # percent: of the surest claim that it is not there
+    true: bool
+
+
+class PieceSeen(NamedTuple):
+    """Two pieces that touch."""
+
+    felt: str
+    share: int  # percent
+    one: bool  # whether they are one thing
+
+
+def places_seen(look: LookedAt) -> Iterator[PlaceSeen]:
+    """Yield the places of things that the task names, where it is known which things these are."""
+    given = _given(look)
+    true = {x: look.moment.alternatives.place(x) for name, (x, *_) in given if name == "unbound"}
+    claimed = [arguments for name, arguments in given if name == "claimed"]
+    following = {arguments[0] for name, arguments in given if name == "next"}
+    for name, arguments in given:
+        if name == "place" and true[arguments[0]] is not None:
+            x, place, case, measure = arguments
+            said = [int(c) for y, room, c in claimed if x == y and _is_against(place, case, room, following)]
+            yield PlaceSeen(x, place, case, int(measure), max(said, default=0), place == true[x])
+
+
+def _is_against(place: str, case: str, room: str, following: set[str]) -> bool:
+    """Return whether a claim that a thing is in a room, or in a next one, is against a place."""
+    if room == "next":
+        return case in ("open", "closed", "door") and place not in following
+    return case in ("open", "closed") and place != room
+
+
+def pieces_seen(look: LookedAt) -> Iterator[PieceSeen]:
+    """Yield the pieces that touch and were not seen to move as one, where they are things."""
+    given = _given(look)
+    whole = {arguments[0] for name, arguments in given if name == "whole"}
+    for name, arguments in given:
+        if name == "touch" and arguments[0] not in whole:
+            one, other, felt, share = arguments
+            if (true := look.moment.alternatives.is_one_thing(one, other)) is not None:
+                yield PieceSeen(felt, int(share), true)
+
+
+def _given(look: LookedAt) -> list[tuple[str, tuple[str, ...]]]:
+    """Return the facts that chances.lp was given at this moment, as name and arguments."""
+    found = next((facts for name, facts in look.decisions if name == "chances"), ())
+    return [atom_parts(fact) for fact in found]

@@ -1,0 +1,96 @@
+"""Chances of what may be: where things are that the task names and nobody saw, which pieces are one (chances.lp).
+
+Geometry measures; the encoding makes chances of it, by what was counted.
+"""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.solver import solve
+from utak.kb.task.binding import Reconciliation
+from utak.kb.task.described import claim_facts
+from utak.kb.task.pieces import touching_pieces
+from utak.kb.task.task import Task
+from utak.kb.world.model import VERGE_NODE, Node, WorldModel
+from utak.kb.world.place_names import WAKING_ROOM
+from utak.kb.world.rooms import NO_ROOM, Rooms
+
+CHANCES = KB_ENCODINGS / "chances.lp"
+CLAIMED_PLACES = ("claim", "related")  # claims, of which those of `in` tell of places
+
+
+def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
+    """Return may_be/3 and joined/3 as facts without full stops."""
+    facts = [*place_facts(task, model, rooms, reconciled)]
+    facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
+    return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
+
+
+def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> Iterator[str]:
+    """Yield where the objects may be that the task names and that mean nothing yet, for kb/asp/chances.lp."""
+    bound = reconciled.binding
+    unbound = [x for x, one in task.parameters.items() if one.kind == "object" and x not in bound]
+    if not unbound:
+        return
+    places = [*_unseen_places(model, rooms)]
+    places += [f"{VERGE_NODE},verge,0"] * bool(model.verge.any())
+    may_turn_out = {*reconciled.doubtful, *reconciled.measurable}
+    free = [node for node in model.objects if node.name not in bound.values()]
+    for x in unbound:
+        yield f"unbound({x})"
+        yield from (f"place({x},{place})" for place in places)
+        for node in free:
+            case = "likely" if (x, node.name) in may_turn_out else "other"
+            yield f"place({x},{node.name},{case},{_likeness(node, x, task)})"
+    yield from _claimed_rooms(unbound, task, rooms, bound.items())
+
+
+def _likeness(node: Node, parameter: str, task: Task) -> int:
+    """Return with how many percent a node is an object as the task claims, as far as it was seen and felt."""
+    share = node.confidence / 100
+    for claim in task.claims:
+        name, *values = (str(part) for part in (claim.fact.name, *claim.fact.args))
+        if values[0] != parameter or name not in ("shape", "colour"):
+            continue
+        likely = node.shape if name == "shape" else {node.colour or values[1]: 100}  # unfelt: any colour
+        held = likely.get(values[1], 0)
+        share *= max(held, 100 - claim.confidence) / 100
+    return round(100 * share)
+
+
+def _unseen_places(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    """Yield the rooms with squares that were not seen or are not settled, and the doors behind which nothing was."""
+    # A room is open where it goes on into what was not seen: its measure is the number of squares beside that.
+    size = int(rooms.labels.max(initial=0)) + 1
+    rim = np.bincount(rooms.labels[with_edge_neighbours(~model.view.seen)], minlength=size).tolist()
+    unsettled = np.bincount(rooms.labels[model.view.state == OPEN], minlength=size).tolist()
+    for room in range(1, size):
+        if rim[room] or unsettled[room]:
+            yield f"r{room},open,{rim[room]}" if rim[room] else f"r{room},closed,{unsettled[room]}"
+    for door in rooms.doors:
+        if door.sides[0] == door.sides[1]:
+            yield f"{door.name},door,{door.confidence}"
+
+
+def _claimed_rooms(unbound: Iterable[str], task: Task, rooms: Rooms, bound: Iterable[tuple[str, str]]) -> Iterator[str]:
+    """Yield in which rooms the task says that things are, and which rooms are next to the first one."""
+    means = dict(bound)
+    told = set(unbound)
+    said = False
+    for fact in claim_facts(task):
+        name, _, rest = fact.partition("(")
+        parts = rest.removesuffix(")").split(",")
+        if name == "claim" and parts[0] in told and parts[1:3] == ["in", "room(next)"]:
+            said = True
+            yield f"claimed({parts[0]},next,{parts[3]})"
+        elif name == "related" and parts[0] == "in" and parts[1] in told and parts[2] in means:
+            yield f"claimed({parts[1]},{means[parts[2]]},{parts[3]})"
+    if said:
+        doors = [door for door in rooms.doors if WAKING_ROOM in door.sides]
+        near = {side for door in doors for side in door.sides} - {WAKING_ROOM, NO_ROOM}
+        yield from (f"next(r{room})" for room in sorted(near))
+        yield from (f"next({door.name})" for door in doors if door.sides[0] == door.sides[1])
