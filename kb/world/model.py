@@ -58,6 +58,8 @@ class Node:
     vague: int = 0  # How many of these look doubtful, too (see `doubtful_squares`)
     shape: Mapping[str, int] = field(default_factory=dict)  # Shape class -> confidence in percent
     polygon: Any = None  # Its believed outline, map frame, in squares; None while nothing fits
+    # Shape class -> the outline that it would have, from the south-west corner of the patch: the other classes that fit
+    rivals: Mapping[str, Any] = field(default_factory=dict)
     colour: str | None = None  # The colour felt on it, one lower-case letter; None when it was not touched
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
     movable: int = UNTRIED_MOVABLE  # Percent of belief that it can be moved, if it is an object
@@ -199,6 +201,14 @@ class WorldModel:
     def object(self, name: str) -> Node | None:
         """Return the node of the object with this name, `o<n>`; None when there is none."""
         return next((node for node in self.objects if node.name == name), None)
+
+    @property
+    def place_box(self) -> tuple[float, float, float, float]:
+        """The west, south, east and north ends of where the robot is, unless lost; frame of the arrays."""
+        x, y = self.place_on_view
+        west, south, east, north = self.leeway
+        far = self.spread * math.dist(self.place, self.frame.origin)
+        return x + west - far, y + south - far, x + east + far, y + north + far
 
     @property
     def place_on_view(self) -> XY:

@@ -206,6 +206,7 @@ def _seen_node(
         vague=doubtful,
         shape=shape,
         polygon=measured.polygon,
+        rivals=measured.others,
         colour=touches.colour_of(patch),
         support=_support(window.mask, window.view),
         short=initial_short(measured.polygon),
