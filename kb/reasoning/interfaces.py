@@ -130,6 +130,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("extent", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
         ("mass", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
         ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
+        ("cut", 1): (REGION_ARGUMENT,),
         ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("hidden_passage", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
         ("counted_solid", 4): (CASE_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
@@ -144,14 +145,24 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("counted_other", 3): (AMOUNT_ARGUMENT,) * 3,
         ("counted_none", 3): (AMOUNT_ARGUMENT,) * 3,
     },
+    "movable": {
+        ("thing", 1): (NODE_ARGUMENT,),
+        ("length", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("moved", 1): (NODE_ARGUMENT,),
+        ("unmoved", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("tried", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("movable", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+    },
     "rooms": {
         ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("door", 2): (NECK_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("opening", 1): (NECK_ARGUMENT,),
+        ("no_door", 1): (NECK_ARGUMENT,),
     },
     "corners": {
         ("convex", 3): (CONVEX_CORNER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
+        ("excluded", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
     },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -192,6 +203,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("given_up", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("refused", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("kept", 1): (PARAMETER_ARGUMENT,),
+        ("enough", 2): (PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("as_well", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("bind", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("hypothesised", 1): (PARAMETER_ARGUMENT,),
@@ -306,6 +318,7 @@ PLAN_FACTS = frozenset(
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
+    "movable": frozenset({("moved", 1)}),
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
@@ -314,6 +327,7 @@ WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES)
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {
+        "movable": frozenset({("kind", 3), ("shape", 3), ("colour", 3)}),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
         "reconciliation": WORLD_PREDICATES,
         "task": WORLD_PREDICATES,
@@ -335,6 +349,10 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("candidate", 2),
         ("seen", 4),
         ("fit", 4),
+        ("cut", 1),
+        ("length", 2),
+        ("unmoved", 2),
+        ("tried", 2),
     }
     | {("described", 2), ("place", 3)}
     | {("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3)}

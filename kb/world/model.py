@@ -23,7 +23,7 @@ from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.mapping.patch import Patch
 from utak.kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
 from utak.kb.perception.frame import Frame
-from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, UNTRIED_MOVABLE, Kinds
+from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, Kinds
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
 from utak.kb.perception.regions import Percept
 
@@ -62,7 +62,7 @@ class Node:
     rivals: Mapping[str, Any] = field(default_factory=dict)
     colour: str | None = None  # The colour felt on it, one lower-case letter; None when it was not touched
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
-    movable: int = UNTRIED_MOVABLE  # Percent of belief that it can be moved, if it is an object
+    movable: int = 100  # Percent of belief that it can be moved, if it is an object, by kb/asp/movable.lp
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive

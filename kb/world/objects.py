@@ -18,17 +18,18 @@ from utak.geometry.raster.components import bounding_boxes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
+from utak.kb.objects.movability import MotionHistory, movabilities
 from utak.kb.objects.proportions import corrected_shape
 from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from utak.kb.objects.touches import Touches
 from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
 from utak.kb.perception.interpretation import (
-    FELT_OBJECT_CONFIDENCE,
     LONGEST_OBJECT,
     MIN_OBJECT_BELIEF,
-    UNTRIED_MOVABLE,
+    NO_KINDS,
     Kinds,
     classify_shapes,
+    interpret_cut,
 )
 from utak.kb.perception.protrusions import (
     VERGE_TOUCH_COLOUR,
@@ -39,7 +40,7 @@ from utak.kb.perception.protrusions import (
 )
 from utak.kb.perception.regions import Percept, Region, label_of, region_of
 from utak.kb.perception.seams import cornered_parts, part_by_colour
-from utak.kb.world.facts import colour_facts
+from utak.kb.world.facts import appearance_facts, colour_facts
 from utak.kb.world.model import (
     PROBABLY_VERGE,
     Node,
@@ -53,7 +54,6 @@ LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a hel
 # Likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
 PLAY_PROBABILITY = 0.05
 MIN_FELT_SHARE = 2 / 3  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
-MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
 
 class MapRegions(NamedTuple):
@@ -66,7 +66,9 @@ class MapRegions(NamedTuple):
     unsettled_seams: tuple[Bools, ...] = ()
 
 
-def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
+def separate_felt_things(
+    regions: MapRegions, view: MapView, felt: Mapping[Square, str], rules: tuple[Path, ...] = ()
+) -> MapRegions:
     """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own."""
     percept, labels, kinds, seams = regions
     names = [f"part{n}" for n in range(int(labels.max()) + 1)]
@@ -76,16 +78,19 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
     if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
-    labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
+    labels, cut = labels.copy(), []
     things, unsettled = _felt_things_at_walls(occupied, colours, view)
     for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
-        separated.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
-        kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE, "verge": 100 - FELT_OBJECT_CONFIDENCE}
+        cut.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
+    touched = [(f"part{labels[place]}", colour) for place, colour in colours.items()]
+    apart = {region.name for region in cut}
+    found = interpret_cut(cut, (one for one in touched if one[0] in apart), rules) if cut else NO_KINDS
     left = set(np.unique(labels).tolist())
-    there = tuple(region for region in separated if label_of(region.name) in left)
-    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), (*seams, *unsettled))
+    there = tuple(region for region in (*percept.regions, *cut) if label_of(region.name) in left)
+    kinds = kinds._replace(kind={**kinds.kind, **found.kind})
+    return MapRegions(percept._replace(regions=there), labels, kinds, (*seams, *unsettled))
 
 
 def _felt_things_at_walls(
@@ -279,6 +284,15 @@ def _felt_objects(
     return [node for node in objects if node.colour in (None, colour) and about & node.patch.squares()]
 
 
+def with_movability(objects: Iterable[Node], rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
+    """Return the objects with how likely each can be moved, as kb/asp/movable.lp says with users' rules."""
+    nodes = tuple(objects)
+    tried = [MotionHistory(n.name, max(n.patch.mask.shape), moved=n.moved, unmoved=n.stuck) for n in nodes]
+    world = (fact for n in nodes for fact in (f"kind({n.name},{n.kind},{n.confidence})", *appearance_facts(n)))
+    found = movabilities(tried, rules, world)
+    return tuple(replace(node, movable=found[node.name]) for node in nodes)
+
+
 def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     """Lay an object that was held upon the map of a model, as a region of its own."""
     # The robot's own square stays its own, since the robot is a point; but if the object may cover a part of that
@@ -315,7 +329,6 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
 
 def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     """Return the node of an object that was held."""
-    movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else UNTRIED_MOVABLE
     return Node(
         name=load.name,
         kind="object",
@@ -327,7 +340,6 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
         polygon=load.polygon,
         colour=load.colour,
         support=load.support,
-        movable=movable,
         moved=load.proven,
         whole=load.whole,
         turned=load.turned,

@@ -6,10 +6,8 @@ from pathlib import Path
 import pytest
 
 from utak.kb.perception.interpretation import (
-    FELT_OBJECT_CONFIDENCE,
     LONGEST_OBJECT,
     SURELY_VERGE,
-    UNTRIED_MOVABLE,
     interpret_regions,
     surest_kind,
 )
@@ -78,7 +76,8 @@ def test_encodings_share_the_counted_priors_as_a_part_of_each() -> None:
 
 
 def test_what_was_counted_is_never_certain() -> None:
-    assert 0 < UNTRIED_MOVABLE < 100 and 0 < FELT_OBJECT_CONFIDENCE < 100
+    constants = [encoding_constant(encoding_path("movable"), name) for name in ("untried_movable", "cut_object")]
+    assert all(0 < percent < 100 for percent in constants)
     found = re.findall(r"^ +[^%]*, (\d+);?  % (\d+) / (\d+)$", (KB_ENCODINGS / "priors.lp").read_text(), re.MULTILINE)
     assert len(found) > 50
     for thousandths, true, of in (tuple(map(int, row)) for row in found):
