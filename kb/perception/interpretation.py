@@ -3,9 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
-
-from clingo import Symbol
+from typing import Any, NamedTuple
 
 from utak.kb.language.atoms import signature_of
 from utak.kb.perception.regions import Percept, Region
@@ -81,7 +79,7 @@ def _interpreted(facts: Sequence[str], rules: tuple[Path, ...]) -> Kinds:
     return Kinds(kinds, frozenset((str(one), str(other)) for one, other in passages))
 
 
-def _kinds_of(atoms: Iterable[Symbol]) -> dict[str, dict[str, int]]:
+def _kinds_of(atoms: Iterable[Any]) -> dict[str, dict[str, int]]:
     """Return region -> kind -> confidence in percent, the greatest of those that atoms state."""
     found: dict[str, dict[str, int]] = {}
     for region, kind, percent in (atom.arguments for atom in atoms if atom.match("kind", 3)):

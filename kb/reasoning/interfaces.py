@@ -305,6 +305,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("verdict", 1): (VERDICT_ARGUMENT,),
     },
 }
+# Encodings that answer questions and decide nothing in a run.
+ASKED_ENCODINGS = frozenset({"alternatives"})
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
     [
