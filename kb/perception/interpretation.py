@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from utak.kb.language.atoms import signature_of
@@ -14,9 +15,8 @@ from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
+TAKEN = KB_ENCODINGS / "taken.lp"
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
-MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is none: 1 of 20, a convention
-SURELY_VERGE = 100 - MIN_OBJECT_BELIEF  # percent: of what is no object then
 LARGE_MASS = 1000  # tenths of squares: of what is surely there
 
 
@@ -27,6 +27,13 @@ class Kinds(NamedTuple):
     kind: Mapping[str, Mapping[str, int]]
     # Pairs of free regions that must be connected by floor that is not seen
     hidden_passages: frozenset[tuple[str, str]]
+
+    # Role -> the regions that are taken for it when the robot acts: bounds, wall, thing (kb/asp/taken.lp)
+    taken: Mapping[str, frozenset[str]] = MappingProxyType({})
+
+    def is_taken(self, region: str, role: str) -> bool:
+        """Return whether a region is taken for bounds, wall or thing."""
+        return region in self.taken.get(role, ())
 
     def of(self, region: str, kind: str) -> int:
         """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it."""
@@ -51,8 +58,9 @@ def _region_facts(region: Region) -> list[str]:
 
 
 def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
-    """Decide what every region is: floor, verge or object."""
-    return _interpreted(percept_facts(percept, touched), rules)
+    """Decide what every region is: floor, verge or object, and what it is taken for."""
+    felt = tuple(touched)
+    return with_taken(_interpreted(percept_facts(percept, felt), rules), percept.regions, felt, rules)
 
 
 def interpret_cut(regions: Sequence[Region], touched: Iterable[tuple[str, str]], rules: tuple[Path, ...] = ()) -> Kinds:
@@ -93,6 +101,24 @@ def _with_stated(counted: Mapping[str, int], stated: Mapping[str, int]) -> dict[
     others = {kind: percent for kind, percent in counted.items() if kind not in stated}
     left, whole = max(100 - sum(stated.values()), 0), sum(others.values())
     return {**{kind: left * percent // whole for kind, percent in others.items() if whole}, **stated}
+
+
+def with_taken(
+    kinds: Kinds, regions: Iterable[Region], touched: Iterable[tuple[str, str]], rules: tuple[Path, ...] = ()
+) -> Kinds:
+    """Return the kinds of regions with what each is taken for, by kb/asp/taken.lp and users' rules."""
+    occupied = [region for region in regions if region.occupied]
+    facts = [f"longest({LONGEST_OBJECT})", *(f"extent({region.name},{region.extent})" for region in occupied)]
+    for region in occupied:
+        facts.append(f"region({region.name},nonzero,{region.certain})")
+        facts += [f"kind({region.name},{kind},{kinds.of(region.name, kind)})" for kind in ("object", "verge")]
+    names = {region.name for region in occupied}
+    facts += _touch_facts(one for one in touched if one[0] in names)
+    found: dict[str, set[str]] = {}
+    for atom in solve([TAKEN, *rules], facts) or ():
+        if atom.match("taken", 2):
+            found.setdefault(str(atom.arguments[1]), set()).add(str(atom.arguments[0]))
+    return kinds._replace(taken={role: frozenset(regions) for role, regions in found.items()})
 
 
 @cache

@@ -117,6 +117,7 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 }
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
 TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
+ROLE_ARGUMENT = word_argument("role", ("bounds", "wall", "thing"))  # that a region is taken for
 CASE_ARGUMENT = word_argument(
     "case",
     ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
@@ -144,6 +145,15 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("counted_first", 7): (AMOUNT_ARGUMENT,) * 7,
         ("counted_other", 3): (AMOUNT_ARGUMENT,) * 3,
         ("counted_none", 3): (AMOUNT_ARGUMENT,) * 3,
+    },
+    "taken": {
+        ("region", 3): (REGION_ARGUMENT, word_argument("state", ("zero", "nonzero")), CONFIDENCE_ARGUMENT),
+        ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("extent", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
+        ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
+        ("longest", 1): (AMOUNT_ARGUMENT,),
+        ("taken", 2): (REGION_ARGUMENT, ROLE_ARGUMENT),
+        ("not_taken", 2): (REGION_ARGUMENT, ROLE_ARGUMENT),
     },
     "movable": {
         ("thing", 1): (NODE_ARGUMENT,),
@@ -321,6 +331,7 @@ PLAN_FACTS = frozenset(
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "movable": frozenset({("moved", 1)}),
+    "taken": frozenset({("kind", 3), ("extent", 2), ("touched", 2), ("longest", 1)}),
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about

@@ -23,7 +23,7 @@ from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.mapping.patch import Patch
 from utak.kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
 from utak.kb.perception.frame import Frame
-from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, Kinds
+from utak.kb.perception.interpretation import LONGEST_OBJECT, Kinds
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
 from utak.kb.perception.regions import Percept
 
@@ -35,7 +35,6 @@ MAX_FREE_PROBABILITY = 0.06
 MIN_OBSTACLE_PROBABILITY = 0.5
 # Probability: a square that is occupied at most so likely, or free so, is not in doubt; tuned
 MAX_CLEAR_PROBABILITY = 0.12
-PROBABLY_VERGE = 51  # percent: confidence from which a region is taken for verge: more likely than not
 FACT_UNITS_PER_SQUARE = 100  # lengths in facts, given or shown by encodings, are hundredths of squares; convention
 ROOT_NODE, FLOOR_NODE, VERGE_NODE = "org", "floor", "verge"  # names of the nodes that are no objects
 
@@ -152,17 +151,17 @@ class WorldModel:
     @cached_property
     def verge(self) -> Bools:
         """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool."""
-        return self._believed_verge(PROBABLY_VERGE)
+        return self._taken_for("bounds")
 
     @cached_property
     def walls(self) -> Bools:
         """Squares of regions that are almost surely verge, (rows, columns) bool on the view's arrays."""
-        return self._believed_verge(SURELY_VERGE)
+        return self._taken_for("wall")
 
-    def _believed_verge(self, least: int) -> Bools:
-        """Return the squares of regions believed to be verge with at least `least` percent: (rows, columns) bool."""
+    def _taken_for(self, role: str) -> Bools:
+        """Return the squares of regions that are taken for a role (kb/asp/taken.lp): (rows, columns) bool."""
         names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]
-        mask: Bools = np.array([self.kinds.of(name, "verge") >= least for name in names])[self.labels]
+        mask: Bools = np.array([self.kinds.is_taken(name, role) for name in names])[self.labels]
         return mask
 
     @cached_property

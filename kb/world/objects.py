@@ -4,7 +4,7 @@ An object that never moved is a region of the map. One that was held has a place
 (kb.objects.held_object); it is laid upon the map as one more region.
 """
 
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -25,11 +25,11 @@ from utak.kb.objects.touches import Touches
 from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
 from utak.kb.perception.interpretation import (
     LONGEST_OBJECT,
-    MIN_OBJECT_BELIEF,
     NO_KINDS,
     Kinds,
     classify_shapes,
     interpret_cut,
+    with_taken,
 )
 from utak.kb.perception.protrusions import (
     VERGE_TOUCH_COLOUR,
@@ -42,7 +42,6 @@ from utak.kb.perception.regions import Percept, Region, label_of, region_of
 from utak.kb.perception.seams import cornered_parts, part_by_colour
 from utak.kb.world.facts import appearance_facts, colour_facts
 from utak.kb.world.model import (
-    PROBABLY_VERGE,
     Node,
     WorldModel,
     count_open_squares,
@@ -72,7 +71,7 @@ def separate_felt_things(
     """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own."""
     percept, labels, kinds, seams = regions
     names = [f"part{n}" for n in range(int(labels.max()) + 1)]
-    bounds = np.array([kinds.of(name, "verge") >= PROBABLY_VERGE for name in names])[labels]
+    bounds = np.array([kinds.is_taken(name, "bounds") for name in names])[labels]
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
@@ -90,6 +89,8 @@ def separate_felt_things(
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in (*percept.regions, *cut) if label_of(region.name) in left)
     kinds = kinds._replace(kind={**kinds.kind, **found.kind})
+    everywhere = ((f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in felt.items())
+    kinds = with_taken(kinds, there, everywhere, rules)
     return MapRegions(percept._replace(regions=there), labels, kinds, (*seams, *unsettled))
 
 
@@ -141,8 +142,7 @@ def seen_objects(
     rules: tuple[Path, ...] = (),
 ) -> tuple[Node, ...]:
     """Return a node for each region of the map that is, or may be, an isolated object."""
-    felt = _felt_things(model)
-    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds, felt)]
+    regions = [region for region in model.percept.regions if model.kinds.is_taken(region.name, "thing")]
     windows = _windows(model, [label_of(r.name) for r in regions])
     patches = [patch_of(window.mask, window.view) for window in windows]
     names = assign_names(patches)
@@ -155,20 +155,6 @@ def seen_objects(
             zip(names, regions, windows, patches, strict=True), key=lambda entry: int(entry[0][1:])
         )
     )
-
-
-def _may_be_object(region: Region, kinds: Kinds, felt: Container[int]) -> bool:
-    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent."""
-    short = region.extent <= LONGEST_OBJECT or label_of(region.name) in felt
-    return short and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
-
-
-def _felt_things(model: WorldModel) -> set[int]:
-    """Return the labels of the regions on which a colour was felt, and nowhere that of the verge."""
-    labels: dict[bool, set[int]] = {True: set(), False: set()}
-    for (x, y), colour in model.felt.items():
-        labels[colour == VERGE_TOUCH_COLOUR].add(int(model.labels[model.view.locate(x, y)]))
-    return labels[False] - labels[True]
 
 
 class _Window(NamedTuple):
@@ -322,7 +308,7 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     if shared:
         state[here] = OPEN
     seen = view.seen | possible
-    kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
+    kinds = model.kinds._replace(kind={**model.kinds.kind, f"part{label}": {"object": 100}})
     laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
     return replace(model, view=laid, labels=labels, kinds=kinds), patch
 

@@ -1,4 +1,4 @@
-"""The ten rules of docs/belief_rules.md: each in a whole run, without it and with it."""
+"""The rules of docs/belief_rules.md: each in a whole run, without it and with it."""
 
 from pathlib import Path
 
@@ -134,3 +134,21 @@ def test_there_is_one_square_at_most(tmp_path: Path) -> None:
     squares = "shape(o1,square)", "shape(o2,square)"
     assert all(chances[0][square] == pytest.approx(0.9, abs=0.01) for square in squares)
     assert all(chances[1][square] < 0.5 for square in squares)
+
+
+def test_what_is_hardly_a_thing_is_none() -> None:
+    without, with_it = pair(11, example("go_to_square"), 3)
+    assert "kind(o1,object,46)." in facts(without, 0)
+    assert "node(o1)." not in facts(with_it, 0)
+    assert "node(o1)." in facts(with_it)
+    for step in with_it:
+        shares = [int(fact.rpartition(",")[2][:-2]) for fact in step.world.facts if ",object," in fact]
+        assert all(share >= 50 for share in shares)
+
+
+def test_every_rule_of_the_page_has_a_test() -> None:
+    rules = sorted(path.name for path in (ROOT / "docs" / "belief_rules").iterdir())
+    text = (ROOT / "docs" / "belief_rules.md").read_text(encoding="utf-8")
+    assert [name for name in rules if f"belief_rules/{name}" not in text] == []
+    tested = Path(__file__).read_text(encoding="utf-8")
+    assert [name for name in rules if f"pair({int(name[:2])}, " not in tested] == []
