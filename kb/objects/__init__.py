@@ -12,5 +12,5 @@ touches         the colours that were felt, square by square
 
 Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit);
 `possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `movabilities`,
-`MotionHistory` (movability); `Touches` (touches).
+`Movability`, `MotionHistory` (movability); `Touches` (touches).
 """

@@ -157,6 +157,9 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     },
     "movable": {
         ("thing", 1): (NODE_ARGUMENT,),
+        ("kind", 3): (NODE_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("trusted", 1): (NODE_ARGUMENT,),
+        ("felt_first", 1): (NODE_ARGUMENT,),
         ("length", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
         ("moved", 1): (NODE_ARGUMENT,),
         ("unmoved", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
@@ -330,7 +333,7 @@ PLAN_FACTS = frozenset(
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
-    "movable": frozenset({("moved", 1)}),
+    "movable": frozenset({("moved", 1), ("kind", 3)}),
     "taken": frozenset({("kind", 3), ("extent", 2), ("touched", 2), ("longest", 1)}),
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
@@ -340,7 +343,7 @@ WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES)
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {
-        "movable": frozenset({("kind", 3), ("shape", 3), ("colour", 3)}),
+        "movable": frozenset({("shape", 3), ("colour", 3)}),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
         "reconciliation": WORLD_PREDICATES,
         "task": WORLD_PREDICATES,

@@ -62,6 +62,7 @@ class Node:
     colour: str | None = None  # The colour felt on it, one lower-case letter; None when it was not touched
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
     movable: int = 100  # Percent of belief that it can be moved, if it is an object, by kb/asp/movable.lp
+    felt_first: bool = False  # Whether it is felt before it is moved: it may be a piece of wall (kb/asp/movable.lp)
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive

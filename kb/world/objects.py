@@ -271,12 +271,11 @@ def _felt_objects(
 
 
 def with_movability(objects: Iterable[Node], rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
-    """Return the objects with how likely each can be moved, as kb/asp/movable.lp says with users' rules."""
+    """Return the objects with what kb/asp/movable.lp and users' rules say of moving them."""
     nodes = tuple(objects)
-    tried = [MotionHistory(n.name, max(n.patch.mask.shape), moved=n.moved, unmoved=n.stuck) for n in nodes]
-    world = (fact for n in nodes for fact in (f"kind({n.name},{n.kind},{n.confidence})", *appearance_facts(n)))
-    found = movabilities(tried, rules, world)
-    return tuple(replace(node, movable=found[node.name]) for node in nodes)
+    tried = [MotionHistory(n.name, n.confidence, max(n.patch.mask.shape), n.moved, n.stuck) for n in nodes]
+    found = movabilities(tried, rules, (fact for node in nodes for fact in appearance_facts(node)))
+    return tuple(replace(n, movable=found[n.name].percent, felt_first=found[n.name].felt_first) for n in nodes)
 
 
 def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:

@@ -146,6 +146,17 @@ def test_what_is_hardly_a_thing_is_none() -> None:
         assert all(share >= 50 for share in shares)
 
 
+def test_things_are_felt_before_they_are_planned_to_be_moved() -> None:
+    without, with_it = pair(12, example("push_square_next_room"), 12)
+    planned = [
+        ["plan(0,carry(o1,g1_r2))." in facts(episode, step) for step in (1, 2)] for episode in (without, with_it)
+    ]
+    assert planned == [[True, True], [False, True]]
+    assert not any(fact.startswith("colour(o1,") for fact in facts(with_it, 1))
+    assert any(fact.startswith("colour(o1,") for fact in facts(with_it, 2))
+    assert (without.verdict, with_it.verdict) == ("done", "done")
+
+
 def test_every_rule_of_the_page_has_a_test() -> None:
     rules = sorted(path.name for path in (ROOT / "docs" / "belief_rules").iterdir())
     text = (ROOT / "docs" / "belief_rules.md").read_text(encoding="utf-8")
