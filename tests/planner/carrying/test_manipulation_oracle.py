@@ -166,7 +166,7 @@ def test_an_obstacle_that_may_be_part_of_the_object_proves_nothing(inexact: bool
     small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == OCCUPIED
     squares = patch_of_polygon(small)
-        beside = Node("o1", "object", POSSIBLE_OBJECT - 1, "part1", squares, 0, polygon=small, felt_first=True)
+    beside = Node("o1", "object", POSSIBLE_OBJECT - 1, "part1", squares, 0, polygon=small, felt_first=True)
     node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square, moved=True, inexact=inexact)
     model = replace(model, objects=(beside, node))
     answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
