@@ -70,7 +70,7 @@ def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> s
     for row in counted:
         if row.predicate == "counted_object" and row.given[0] in CONSTANTS:
             lines += _constant(*CONSTANTS[str(row.given[0])], row)
-    about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
+    about = "Percent: of objects that were never tried, so many could be moved; movable.lp reads it."
     lines += _constant("untried_movable", about, movable)
     lines += ["", "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
     for predicate, (arguments, _, words) in WORDS.items():
