@@ -36,6 +36,7 @@ from utak.kb.world.objects import (
     lay_upon,
     seen_objects,
     separate_felt_things,
+    with_movability,
     within_reach,
 )
 
@@ -168,7 +169,7 @@ class Knowledge:
         percept, labels, _ = parted
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(felt.items())]
         regions = MapRegions(percept, labels, interpret_regions(percept, touched, self.rules), parted.unsettled)
-        return separate_felt_things(regions, view, felt)
+        return separate_felt_things(regions, view, felt, self.rules)
 
     def _world(
         self, impression: Impression, accommodated: Accommodation, view: MapView, regions: MapRegions
@@ -214,7 +215,7 @@ class Knowledge:
         for load in self.memory.held_objects.values():
             model, patch = lay_upon(model, load)
             objects += (held_node(load, patch, int(model.labels.max())),)
-        self.objects = tuple(sorted(objects, key=lambda node: int(node.name[1:])))
+        self.objects = with_movability(sorted(objects, key=lambda node: int(node.name[1:])), self.rules)
         self.tracker.keep_things(
             {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}
         )

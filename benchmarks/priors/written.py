@@ -85,7 +85,7 @@ def text(counted: Sequence[Counted], movable: Counted | None, told: Iterable[str
         if row.predicate == "counted_object" and row.given[0] in CONSTANTS:
             lines += _constant(*CONSTANTS[str(row.given[0])], row)
     if movable is not None:
-        about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
+        about = "Percent: of objects that were never tried, so many could be moved; movable.lp reads it."
         lines += _constant("untried_movable", about, movable)
     lines = [*lines[: -1 if not lines[-1] else None], ""]
     lines += ["% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]

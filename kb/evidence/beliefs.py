@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from itertools import islice
 from typing import Protocol
 
 from utak.kb.evidence.inputs import Given, input_reason, squares_reason
@@ -20,7 +21,6 @@ from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError, did_you_mean
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import thing_positions
-from utak.kb.perception.interpretation import UNTRIED_MOVABLE
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
@@ -238,9 +238,13 @@ class FactExplainer:
             tried = self._motion_reasons(node, step)
             if tried:
                 return tried
-        counted = f"of objects that were never tried, {UNTRIED_MOVABLE} of 100 could be moved, by what was counted"
-        untried = Reason("it was never tried", counted, ReasonKind.CONVENTION)
-        return [untried, *self._facts([f"kind({node},object,"], step)]
+        said = (
+            self.prove(call, atom, number)
+            for number, call in self.record.answers(step, "movable", step)
+            for atom in call.answer or ()  # those of users' rules come first
+            if atom_parts(atom)[1][0] == node
+        )
+        return [*islice(said, 1), *self._facts([f"kind({node},object,"], step)]
 
     def _grasp_reasons(self, node: str, step: int) -> list[Reason]:
         """Return why a node is believed to be in hand: the newest grasp."""

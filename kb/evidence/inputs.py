@@ -69,7 +69,7 @@ def _below(
     step, encoding = given.step, given.call.encoding
     if encoding == "interpretation":
         return _region_reasons(record, step, name, arguments)
-    if encoding == "shapes":
+    if encoding in ("shapes", "movable"):
         return [squares_reason(record, step, arguments[0])]
     if encoding == "rooms":
         return _neck_reasons(record, given, arguments)
@@ -104,7 +104,7 @@ def _node_of(record: Record, step: int, region: str) -> str:
     known = next((node for node, other in record.steps[step].regions.items() if other == region), None)
     if known is not None:
         return known
-    facts = next((call.facts for _, call in record.answers(step, "interpretation", step)), ())
+    facts = (fact for _, call in record.answers(step, "interpretation", step) for fact in call.facts)
     return FLOOR_NODE if any(fact.startswith(f"region({region},zero,") for fact in facts) else VERGE_NODE
 
 

@@ -7,8 +7,10 @@ shape_fit       the shape classes that fit the squares of a patch, measured by g
 parts           the parts of an outline, such as the legs of an L
 proportions     whether a rectangle is a square or a brick, as far as its extent is known
 held_object     an object that the robot has held: its outline, its place, and how exactly both are known
+movability      whether things can be moved, decided by kb/asp/movable.lp
 touches         the colours that were felt, square by square
 
 Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit);
-`possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `Touches` (touches).
+`possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `movabilities`,
+`Movability`, `MotionHistory` (movability); `Touches` (touches).
 """

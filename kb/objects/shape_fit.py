@@ -1,12 +1,13 @@
 """Measuring shapes: which shape classes fit the squares of a patch, and how well. kb/asp/shapes.lp decides."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
 
 from utak.geometry.kernels.arrays import Bools
-from utak.geometry.shapes.fit import fit_shapes
+from utak.geometry.shapes.fit import Fit, fit_shapes
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, MapView
 from utak.kb.mapping.patch import Patch
 
@@ -22,13 +23,14 @@ class ShapeMeasurement(NamedTuple):
     polygon: Any  # The outline of the first class, map frame, in squares; None when nothing fits yet
     open: int  # How many squares of the patch are not settled
     full: int  # How many are settled as covered
+    others: Mapping[str, Any] = {}  # The outlines of the other classes, from the south-west corner of the patch
 
 
 class ShapeMeasurer:
     """Measures patches, and remembers the fits of all squares that it has measured, so that none is measured twice."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[bytes, bytes], tuple[tuple[tuple[str, int], ...], Any]] = {}
+        self._known: dict[tuple[bytes, bytes], tuple[Fit, ...]] = {}
 
     def measure(self, patch: Patch, view: MapView) -> ShapeMeasurement:
         """Measure a patch of the map."""
@@ -48,14 +50,15 @@ class ShapeMeasurer:
 
     def _measured(self, patch: Patch, full: Bools, possible: Bools) -> ShapeMeasurement:
         """Return the fits of a patch, the outline of the first of them, and the counts of both masks."""
-        fits, polygon = self._fit(full, possible)
-        placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
-        return ShapeMeasurement(fits, placed, int(possible.sum()), int(full.sum()))
+        found = self._fit(full, possible)
+        fits = tuple((fit.shape, fit.misfit) for fit in found)
+        placed = shapely.transform(found[0].polygon, lambda points: points + np.array([patch.west, patch.south]))
+        others = {fit.shape: fit.polygon for fit in found[1:]}
+        return ShapeMeasurement(fits, placed, int(possible.sum()), int(full.sum()), others)
 
-    def _fit(self, full: Bools, possible: Bools) -> tuple[tuple[tuple[str, int], ...], Any]:
-        """Return the fits of some squares, and the outline of the first, in the frame of the masks."""
+    def _fit(self, full: Bools, possible: Bools) -> tuple[Fit, ...]:
+        """Return the fits of some squares, the likeliest first, in the frame of the masks."""
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())
         if key not in self._known:
-            found = fit_shapes(full, possible)
-            self._known[key] = (tuple((fit.shape, fit.misfit) for fit in found), found[0].polygon)
+            self._known[key] = tuple(fit_shapes(full, possible))
         return self._known[key]

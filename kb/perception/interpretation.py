@@ -1,12 +1,13 @@
 """Interpretation: what each region is, and which shape an object has. Facts go in, answers of kb/asp come out."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from utak.kb.language.atoms import signature_of
-from utak.kb.perception.regions import Percept
+from utak.kb.perception.regions import Percept, Region
 from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
 from utak.kb.reasoning.solver import solve
 from utak.kb.reasoning.user_rules import predicates_read, rules_reach
@@ -14,12 +15,8 @@ from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
+TAKEN = KB_ENCODINGS / "taken.lp"
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
-# Percent: of things that were felt and cut out of the bounds (kb.world.objects), so many were objects; counted
-FELT_OBJECT_CONFIDENCE = encoding_constant(INTERPRETATION, "cut_object")
-UNTRIED_MOVABLE = encoding_constant(INTERPRETATION, "untried_movable")  # percent: of objects never tried; counted
-MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is none: 1 of 20, a convention
-SURELY_VERGE = 100 - MIN_OBJECT_BELIEF  # percent: of what is no object then
 LARGE_MASS = 1000  # tenths of squares: of what is surely there
 
 
@@ -31,35 +28,97 @@ class Kinds(NamedTuple):
     # Pairs of free regions that must be connected by floor that is not seen
     hidden_passages: frozenset[tuple[str, str]]
 
+    # Role -> the regions that are taken for it when the robot acts: bounds, wall, thing (kb/asp/taken.lp)
+    taken: Mapping[str, frozenset[str]] = MappingProxyType({})
+
+    def is_taken(self, region: str, role: str) -> bool:
+        """Return whether a region is taken for bounds, wall or thing."""
+        return region in self.taken.get(role, ())
+
     def of(self, region: str, kind: str) -> int:
         """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it."""
         return self.kind.get(region, {}).get(kind, 0)
 
 
+NO_KINDS = Kinds({}, frozenset())
+
+
 def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> list[str]:
     """Return the facts about regions for kb/asp/interpretation.lp, without full stops."""
-    facts = []
-    for region in percept.regions:
-        facts.append(f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})")
-        facts += [f"extent({region.name},{region.extent})", f"mass({region.name},{region.mass})"]
-        facts += [f"rim({region.name})"] * region.rim
+    facts = [fact for region in percept.regions for fact in _region_facts(region)]
     facts += [f"surrounds({outer},{inner})" for outer, inner in sorted(percept.surrounds)]
-    facts += [f"touched({region},{colour})" for region, colour in sorted(set(touched))]
-    return facts
+    return facts + _touch_facts(touched)
+
+
+def _region_facts(region: Region) -> list[str]:
+    """Return the facts about one region alone, without full stops."""
+    facts = [f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})"]
+    facts += [f"extent({region.name},{region.extent})", f"mass({region.name},{region.mass})"]
+    return facts + [f"rim({region.name})"] * region.rim
 
 
 def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
-    """Decide what every region is: floor, verge or object."""
-    kind: dict[str, dict[str, int]] = {}
-    passages = set()
-    for atom in solve([INTERPRETATION, *rules], percept_facts(percept, touched)) or ():
-        args = [str(a) for a in atom.arguments]
-        if atom.match("kind", 3):
-            known = kind.setdefault(args[0], {})
-            known[args[1]] = max(known.get(args[1], 0), int(args[2]))
-        elif atom.match("hidden_passage", 2):
-            passages.add((args[0], args[1]))
-    return Kinds(kind, frozenset(passages))
+    """Decide what every region is: floor, verge or object, and what it is taken for."""
+    felt = tuple(touched)
+    return with_taken(_interpreted(percept_facts(percept, felt), rules), percept.regions, felt, rules)
+
+
+def interpret_cut(regions: Sequence[Region], touched: Iterable[tuple[str, str]], rules: tuple[Path, ...] = ()) -> Kinds:
+    """Decide what regions are that were cut out of what bounds the floor, since they were felt."""
+    facts = [fact for region in regions for fact in (*_region_facts(region), f"cut({region.name})")]
+    return _interpreted([*facts, *_touch_facts(touched)], rules)
+
+
+def _touch_facts(touched: Iterable[tuple[str, str]]) -> list[str]:
+    """Return the facts about what was felt at regions, without full stops."""
+    return [f"touched({region},{colour})" for region, colour in sorted(set(touched))]
+
+
+def _interpreted(facts: Sequence[str], rules: tuple[Path, ...]) -> Kinds:
+    """Return what kb/asp/interpretation.lp says of regions; what users' rules state of a region counts first."""
+    atoms = solve([INTERPRETATION, *rules], facts) or []
+    kinds = _kinds_of(atoms)
+    if rules_reach(INTERPRETATION.stem, rules):
+        with record_decisions():  # what rules change is asked, not decided
+            usual = solve([INTERPRETATION], facts) or []
+        counted, stated = _kinds_of(usual), _kinds_of(atom for atom in atoms if atom not in usual)
+        kinds = counted | {region: _with_stated(counted.get(region, {}), stated[region]) for region in stated}
+    passages = (atom.arguments for atom in atoms if atom.match("hidden_passage", 2))
+    return Kinds(kinds, frozenset((str(one), str(other)) for one, other in passages))
+
+
+def _kinds_of(atoms: Iterable[Any]) -> dict[str, dict[str, int]]:
+    """Return region -> kind -> confidence in percent, the greatest of those that atoms state."""
+    found: dict[str, dict[str, int]] = {}
+    for region, kind, percent in (atom.arguments for atom in atoms if atom.match("kind", 3)):
+        known = found.setdefault(str(region), {})
+        known[str(kind)] = max(known.get(str(kind), 0), percent.number)
+    return found
+
+
+def _with_stated(counted: Mapping[str, int], stated: Mapping[str, int]) -> dict[str, int]:
+    """Return the kinds of a region as stated; its other kinds share what is left of 100, as they were counted."""
+    others = {kind: percent for kind, percent in counted.items() if kind not in stated}
+    left, whole = max(100 - sum(stated.values()), 0), sum(others.values())
+    return {**{kind: left * percent // whole for kind, percent in others.items() if whole}, **stated}
+
+
+def with_taken(
+    kinds: Kinds, regions: Iterable[Region], touched: Iterable[tuple[str, str]], rules: tuple[Path, ...] = ()
+) -> Kinds:
+    """Return the kinds of regions with what each is taken for, by kb/asp/taken.lp and users' rules."""
+    occupied = [region for region in regions if region.occupied]
+    facts = [f"longest({LONGEST_OBJECT})", *(f"extent({region.name},{region.extent})" for region in occupied)]
+    for region in occupied:
+        facts.append(f"region({region.name},nonzero,{region.certain})")
+        facts += [f"kind({region.name},{kind},{kinds.of(region.name, kind)})" for kind in ("object", "verge")]
+    names = {region.name for region in occupied}
+    facts += _touch_facts(one for one in touched if one[0] in names)
+    found: dict[str, set[str]] = {}
+    for atom in solve([TAKEN, *rules], facts) or ():
+        if atom.match("taken", 2):
+            found.setdefault(str(atom.arguments[1]), set()).add(str(atom.arguments[0]))
+    return kinds._replace(taken={role: frozenset(regions) for role, regions in found.items()})
 
 
 @cache

@@ -2,7 +2,7 @@
 
 A fact of a predicate that an encoding knows becomes a rule of that encoding, as with `--kb`. A fact of the world model
 that no encoding takes counts for queries alone. Some facts of the world model have an equivalent in
-`reconciliation.lp`: what an object's colour is, whether it can be moved, and what a parameter of the task means.
+`reconciliation.lp`: what an object's colour is, and what a parameter of the task means.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,7 +36,6 @@ ASSUMPTION_FILE = "assume"  # the name of an assumption in messages
 EQUIVALENTS: Mapping[Signature, Callable[[Fact], str]] = {
     ("bound", 2): lambda fact: f"bind({fact.args[0]},{fact.args[1]})",
     ("colour", 3): lambda fact: f"has({fact.args[0]},colour,{fact.args[1]},{fact.args[2]})",
-    ("movable", 2): lambda fact: f"fixed({fact.args[0]})" if str(fact.args[1]) == "0" else "",
 }
 
 

@@ -14,7 +14,12 @@ KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of t
 ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
 SUFFIX = ".lp"  # of the files of encodings
 # By the name of an encoding: files beside it that are a part of it, and of others, too.
-SHARED_FILES = {"interpretation": ("priors",), "shapes": ("priors",), "chances": ("priors_of_places",)}
+SHARED_FILES = {
+    "interpretation": ("priors",),
+    "shapes": ("priors",),
+    "movable": ("priors",),
+    "chances": ("priors_of_places",),
+}
 SHARED_PARTS = frozenset(
     name for names in SHARED_FILES.values() for name in names
 )  # they are no encodings by themselves

@@ -119,6 +119,7 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 }
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
 TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
+ROLE_ARGUMENT = word_argument("role", ("bounds", "wall", "thing"))  # that a region is taken for
 CASE_ARGUMENT = word_argument(
     "case",
     ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
@@ -132,6 +133,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("extent", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
         ("mass", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
         ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
+        ("cut", 1): (REGION_ARGUMENT,),
         ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("hidden_passage", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
         ("counted_solid", 4): (CASE_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
@@ -146,14 +148,36 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("counted_other", 3): (AMOUNT_ARGUMENT,) * 3,
         ("counted_none", 3): (AMOUNT_ARGUMENT,) * 3,
     },
+    "taken": {
+        ("region", 3): (REGION_ARGUMENT, word_argument("state", ("zero", "nonzero")), CONFIDENCE_ARGUMENT),
+        ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("extent", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
+        ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
+        ("longest", 1): (AMOUNT_ARGUMENT,),
+        ("taken", 2): (REGION_ARGUMENT, ROLE_ARGUMENT),
+        ("not_taken", 2): (REGION_ARGUMENT, ROLE_ARGUMENT),
+    },
+    "movable": {
+        ("thing", 1): (NODE_ARGUMENT,),
+        ("kind", 3): (NODE_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("trusted", 1): (NODE_ARGUMENT,),
+        ("felt_first", 1): (NODE_ARGUMENT,),
+        ("length", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("moved", 1): (NODE_ARGUMENT,),
+        ("unmoved", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("tried", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("movable", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+    },
     "rooms": {
         ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("door", 2): (NECK_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("opening", 1): (NECK_ARGUMENT,),
+        ("no_door", 1): (NECK_ARGUMENT,),
     },
     "corners": {
         ("convex", 3): (CONVEX_CORNER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
+        ("excluded", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
     },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -194,6 +218,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("given_up", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("refused", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("kept", 1): (PARAMETER_ARGUMENT,),
+        ("enough", 2): (PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("as_well", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("bind", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("hypothesised", 1): (PARAMETER_ARGUMENT,),
@@ -295,6 +320,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("verdict", 1): (VERDICT_ARGUMENT,),
     },
 }
+# Encodings that answer questions and decide nothing in a run.
+ASKED_ENCODINGS = frozenset({"alternatives"})
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
     [
@@ -308,6 +335,8 @@ PLAN_FACTS = frozenset(
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
+    "movable": frozenset({("moved", 1), ("kind", 3)}),
+    "taken": frozenset({("kind", 3), ("extent", 2), ("touched", 2), ("longest", 1)}),
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
@@ -318,6 +347,7 @@ WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - M
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {
+        "movable": frozenset({("shape", 3), ("colour", 3)}),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
         "reconciliation": WORLD_PREDICATES,
         "task": WORLD_PREDICATES,
@@ -339,6 +369,10 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("candidate", 2),
         ("seen", 4),
         ("fit", 4),
+        ("cut", 1),
+        ("length", 2),
+        ("unmoved", 2),
+        ("tried", 2),
     }
     | {("described", 2), ("place", 3)}
     | {("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3)}

@@ -23,7 +23,7 @@ from utak.kb.language.terms import Fact
 from utak.kb.language.tokens import Token, tokenize
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from utak.kb.reasoning.encodings import BoundedAnswer, encoding_path, encoding_text
-from utak.kb.reasoning.interfaces import USER_RULE_INTERFACES
+from utak.kb.reasoning.interfaces import ASKED_ENCODINGS, USER_RULE_INTERFACES
 from utak.kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
 from utak.kb.reasoning.sentences import RuleWords, read_sentences
 from utak.kb.reasoning.worker import Worker
@@ -182,7 +182,8 @@ def solve_with_user_rules(
 def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple[str, ...]:
     """Return the rules with a body that had no instance in any decision, in words, in the order of the files."""
     rules = read_rules(users) if users else Rulebook(())
-    deciding = {one for name in USER_RULE_INTERFACES for one in rules.rules_reaching(name) if one.condition}
+    encodings = USER_RULE_INTERFACES.keys() - ASKED_ENCODINGS
+    deciding = {one for name in encodings for one in rules.rules_reaching(name) if one.condition}
     what = "this rule never applied, for nothing was as it says"
     return tuple(
         f"{one.line}: {what}: {one.written.removeprefix('#false ')}{_said_of_short_forms(one)}"

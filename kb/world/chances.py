@@ -92,10 +92,7 @@ class Chances:
         height, width = self.rooms.labels.shape
         if self.model.lost:
             return (0.0, 0.0, float(width), float(height)), False
-        x, y = self.model.place_on_view
-        west, south, east, north = self.model.leeway
-        far = self.model.spread * math.dist(self.model.place, self.model.frame.origin)
-        return (x + west - far, y + south - far, x + east + far, y + north + far), True
+        return self.model.place_box, True
 
     def _middle_box(self, node: Node) -> tuple[Box, bool]:
         """Return where the middle of an object may be, whatever open squares it covers."""

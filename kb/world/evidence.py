@@ -3,17 +3,19 @@
 It goes with the facts of the world model into an episode's line, so that explanations need nothing but the episode.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
-from utak.geometry.kernels.arrays import Longs
+from utak.geometry.kernels.arrays import XY, Longs
+from utak.geometry.raster.contours import outline
 from utak.kb.localisation.field_account import Accommodation, CellStatus, FieldAccount
 from utak.kb.perception.regions import label_of
-from utak.kb.world.model import FLOOR_NODE, VERGE_NODE, WorldModel, free_squares
+from utak.kb.world.model import FLOOR_NODE, VERGE_NODE, Node, WorldModel, free_squares
 from utak.kb.world.rooms import Rooms
 
+MIN_DRAWN_SHARE = 5  # percent: how likely a class must be for its outline to be stated: 1 of 20, a convention
 STATUS_LETTERS = {CellStatus.PREDICTED: "p", CellStatus.EXPLAINED: "e", CellStatus.NOISE: "n"}
 
 
@@ -34,7 +36,34 @@ def evidence(
             door.name: [[round(v, 3) for v in model.place_to_utak(*end)] for end in (door.a, door.b)]
             for door in rooms.doors
         },
+        **_alternatives(model),
     }
+
+
+def _alternatives(model: WorldModel) -> dict[str, Any]:
+    """Return what may be otherwise, as far as it has a place: shapes, parts of the verge, where the robot is."""
+    west, south, east, north = model.place_box
+    corners = [] if model.lost else [(west, south), (east, south), (east, north), (west, north)]
+    unfelt = np.any(model.unfelt_pieces, axis=0) if model.unfelt_pieces else None
+    return {
+        "outlines": {node.name: found for node in model.objects if (found := _other_outline(node, model))},
+        "unfelt": [] if unfelt is None else [_placed(ring, model) for ring in outline(unfelt)],
+        "place_within": _placed(corners, model),
+    }
+
+
+def _other_outline(node: Node, model: WorldModel) -> dict[str, list[list[float]]]:
+    """Return class -> outline of the likeliest class besides that of the segment facts; {} for none."""
+    likeliest = max(node.rivals, key=lambda shape: node.shape.get(shape, 0), default="")
+    if node.shape.get(likeliest, 0) < MIN_DRAWN_SHARE:
+        return {}
+    corner = np.array([node.patch.west - model.view.west, node.patch.south - model.view.south])
+    return {likeliest: _placed(np.array(node.rivals[likeliest].exterior.coords)[:-1] + corner, model)}
+
+
+def _placed(points: Iterable[XY], model: WorldModel) -> list[list[float]]:
+    """Return points on the view's arrays as (east, north), robot frame."""
+    return [[round(float(v), 2) + 0.0 for v in model.place_to_utak(x, y)] for x, y in points]
 
 
 def _explaining_facts(model: WorldModel, fields: FieldAccount, kind_facts: Mapping[str, str]) -> dict[str, list[int]]:

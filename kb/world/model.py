@@ -23,7 +23,7 @@ from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.mapping.patch import Patch
 from utak.kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
 from utak.kb.perception.frame import Frame
-from utak.kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, UNTRIED_MOVABLE, Kinds
+from utak.kb.perception.interpretation import LONGEST_OBJECT, Kinds
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
 from utak.kb.perception.regions import Percept
 
@@ -35,7 +35,6 @@ MAX_FREE_PROBABILITY = 0.06
 MIN_OBSTACLE_PROBABILITY = 0.5
 # Probability: a square that is occupied at most so likely, or free so, is not in doubt; tuned
 MAX_CLEAR_PROBABILITY = 0.12
-PROBABLY_VERGE = 51  # percent: confidence from which a region is taken for verge: more likely than not
 FACT_UNITS_PER_SQUARE = 100  # lengths in facts, given or shown by encodings, are hundredths of squares; convention
 ROOT_NODE, FLOOR_NODE, VERGE_NODE = "org", "floor", "verge"  # names of the nodes that are no objects
 
@@ -58,9 +57,12 @@ class Node:
     vague: int = 0  # How many of these look doubtful, too (see `doubtful_squares`)
     shape: Mapping[str, int] = field(default_factory=dict)  # Shape class -> confidence in percent
     polygon: Any = None  # Its believed outline, map frame, in squares; None while nothing fits
+    # Shape class -> the outline that it would have, from the south-west corner of the patch: the other classes that fit
+    rivals: Mapping[str, Any] = field(default_factory=dict)
     colour: str | None = None  # The colour felt on it, one lower-case letter; None when it was not touched
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
-    movable: int = UNTRIED_MOVABLE  # Percent of belief that it can be moved, if it is an object
+    movable: int = 100  # Percent of belief that it can be moved, if it is an object, by kb/asp/movable.lp
+    felt_first: bool = False  # Whether it is felt before it is moved: it may be a piece of wall (kb/asp/movable.lp)
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive
@@ -152,17 +154,17 @@ class WorldModel:
     @cached_property
     def verge(self) -> Bools:
         """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool."""
-        return self._believed_verge(PROBABLY_VERGE)
+        return self._taken_for("bounds")
 
     @cached_property
     def walls(self) -> Bools:
         """Squares of regions that are almost surely verge, (rows, columns) bool on the view's arrays."""
-        return self._believed_verge(SURELY_VERGE)
+        return self._taken_for("wall")
 
-    def _believed_verge(self, least: int) -> Bools:
-        """Return the squares of regions believed to be verge with at least `least` percent: (rows, columns) bool."""
+    def _taken_for(self, role: str) -> Bools:
+        """Return the squares of regions that are taken for a role (kb/asp/taken.lp): (rows, columns) bool."""
         names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]
-        mask: Bools = np.array([self.kinds.of(name, "verge") >= least for name in names])[self.labels]
+        mask: Bools = np.array([self.kinds.is_taken(name, role) for name in names])[self.labels]
         return mask
 
     @cached_property
@@ -201,6 +203,14 @@ class WorldModel:
     def object(self, name: str) -> Node | None:
         """Return the node of the object with this name, `o<n>`; None when there is none."""
         return next((node for node in self.objects if node.name == name), None)
+
+    @property
+    def place_box(self) -> tuple[float, float, float, float]:
+        """The west, south, east and north ends of where the robot is, unless lost; frame of the arrays."""
+        x, y = self.place_on_view
+        west, south, east, north = self.leeway
+        far = self.spread * math.dist(self.place, self.frame.origin)
+        return x + west - far, y + south - far, x + east + far, y + north + far
 
     @property
     def place_on_view(self) -> XY:

@@ -4,7 +4,7 @@ An object that never moved is a region of the map. One that was held has a place
 (kb.objects.held_object); it is laid upon the map as one more region.
 """
 
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -18,17 +18,18 @@ from utak.geometry.raster.components import bounding_boxes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
+from utak.kb.objects.movability import MotionHistory, movabilities
 from utak.kb.objects.proportions import corrected_shape
 from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from utak.kb.objects.touches import Touches
 from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
 from utak.kb.perception.interpretation import (
-    FELT_OBJECT_CONFIDENCE,
     LONGEST_OBJECT,
-    MIN_OBJECT_BELIEF,
-    UNTRIED_MOVABLE,
+    NO_KINDS,
     Kinds,
     classify_shapes,
+    interpret_cut,
+    with_taken,
 )
 from utak.kb.perception.protrusions import (
     VERGE_TOUCH_COLOUR,
@@ -39,9 +40,8 @@ from utak.kb.perception.protrusions import (
 )
 from utak.kb.perception.regions import Percept, Region, label_of, region_of
 from utak.kb.perception.seams import cornered_parts, part_by_colour
-from utak.kb.world.facts import colour_facts
+from utak.kb.world.facts import appearance_facts, colour_facts
 from utak.kb.world.model import (
-    PROBABLY_VERGE,
     Node,
     WorldModel,
     count_open_squares,
@@ -53,7 +53,6 @@ LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a hel
 # Likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
 PLAY_PROBABILITY = 0.05
 MIN_FELT_SHARE = 2 / 3  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
-MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
 
 class MapRegions(NamedTuple):
@@ -66,26 +65,33 @@ class MapRegions(NamedTuple):
     unsettled_seams: tuple[Bools, ...] = ()
 
 
-def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
+def separate_felt_things(
+    regions: MapRegions, view: MapView, felt: Mapping[Square, str], rules: tuple[Path, ...] = ()
+) -> MapRegions:
     """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own."""
     percept, labels, kinds, seams = regions
     names = [f"part{n}" for n in range(int(labels.max()) + 1)]
-    bounds = np.array([kinds.of(name, "verge") >= PROBABLY_VERGE for name in names])[labels]
+    bounds = np.array([kinds.is_taken(name, "bounds") for name in names])[labels]
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
     if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
-    labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
+    labels, cut = labels.copy(), []
     things, unsettled = _felt_things_at_walls(occupied, colours, view)
     for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
-        separated.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
-        kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE, "verge": 100 - FELT_OBJECT_CONFIDENCE}
+        cut.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
+    touched = [(f"part{labels[place]}", colour) for place, colour in colours.items()]
+    apart = {region.name for region in cut}
+    found = interpret_cut(cut, (one for one in touched if one[0] in apart), rules) if cut else NO_KINDS
     left = set(np.unique(labels).tolist())
-    there = tuple(region for region in separated if label_of(region.name) in left)
-    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), (*seams, *unsettled))
+    there = tuple(region for region in (*percept.regions, *cut) if label_of(region.name) in left)
+    kinds = kinds._replace(kind={**kinds.kind, **found.kind})
+    everywhere = ((f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in felt.items())
+    kinds = with_taken(kinds, there, everywhere, rules)
+    return MapRegions(percept._replace(regions=there), labels, kinds, (*seams, *unsettled))
 
 
 def _felt_things_at_walls(
@@ -136,8 +142,7 @@ def seen_objects(
     rules: tuple[Path, ...] = (),
 ) -> tuple[Node, ...]:
     """Return a node for each region of the map that is, or may be, an isolated object."""
-    felt = _felt_things(model)
-    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds, felt)]
+    regions = [region for region in model.percept.regions if model.kinds.is_taken(region.name, "thing")]
     windows = _windows(model, [label_of(r.name) for r in regions])
     patches = [patch_of(window.mask, window.view) for window in windows]
     names = assign_names(patches)
@@ -150,20 +155,6 @@ def seen_objects(
             zip(names, regions, windows, patches, strict=True), key=lambda entry: int(entry[0][1:])
         )
     )
-
-
-def _may_be_object(region: Region, kinds: Kinds, felt: Container[int]) -> bool:
-    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent."""
-    short = region.extent <= LONGEST_OBJECT or label_of(region.name) in felt
-    return short and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
-
-
-def _felt_things(model: WorldModel) -> set[int]:
-    """Return the labels of the regions on which a colour was felt, and nowhere that of the verge."""
-    labels: dict[bool, set[int]] = {True: set(), False: set()}
-    for (x, y), colour in model.felt.items():
-        labels[colour == VERGE_TOUCH_COLOUR].add(int(model.labels[model.view.locate(x, y)]))
-    return labels[False] - labels[True]
 
 
 class _Window(NamedTuple):
@@ -206,6 +197,7 @@ def _seen_node(
         vague=doubtful,
         shape=shape,
         polygon=measured.polygon,
+        rivals=measured.others,
         colour=touches.colour_of(patch),
         support=_support(window.mask, window.view),
         short=initial_short(measured.polygon),
@@ -278,6 +270,14 @@ def _felt_objects(
     return [node for node in objects if node.colour in (None, colour) and about & node.patch.squares()]
 
 
+def with_movability(objects: Iterable[Node], rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
+    """Return the objects with what kb/asp/movable.lp and users' rules say of moving them."""
+    nodes = tuple(objects)
+    tried = [MotionHistory(n.name, n.confidence, max(n.patch.mask.shape), n.moved, n.stuck) for n in nodes]
+    found = movabilities(tried, rules, (fact for node in nodes for fact in appearance_facts(node)))
+    return tuple(replace(n, movable=found[n.name].percent, felt_first=found[n.name].felt_first) for n in nodes)
+
+
 def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     """Lay an object that was held upon the map of a model, as a region of its own."""
     # The robot's own square stays its own, since the robot is a point; but if the object may cover a part of that
@@ -307,14 +307,13 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     if shared:
         state[here] = OPEN
     seen = view.seen | possible
-    kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
+    kinds = model.kinds._replace(kind={**model.kinds.kind, f"part{label}": {"object": 100}})
     laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
     return replace(model, view=laid, labels=labels, kinds=kinds), patch
 
 
 def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     """Return the node of an object that was held."""
-    movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else UNTRIED_MOVABLE
     return Node(
         name=load.name,
         kind="object",
@@ -326,7 +325,6 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
         polygon=load.polygon,
         colour=load.colour,
         support=load.support,
-        movable=movable,
         moved=load.proven,
         whole=load.whole,
         turned=load.turned,

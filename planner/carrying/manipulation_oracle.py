@@ -30,7 +30,6 @@ from utak.kb.world.model import Node, WorldModel
 from utak.planner.carrying.infeasibility import Infeasibility, certify
 from utak.planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor
 from utak.planner.goals.placement import (
-    CERTAIN_OBJECT,
     POSSIBLE_OBJECT,
     forbidden_squares,
     possible_extension,
@@ -286,7 +285,7 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     aside, proves = others == OtherObjects.ASIDE, level == UNSEEN_LEVEL
     for other in (other for other in model.objects if other.name != node.name):
         mask = model.mask(other.patch)
-        if aside and other.movable > 0 and other.confidence >= CERTAIN_OBJECT:
+        if aside and other.movable > 0 and not other.felt_first:
             free |= mask
         if aside and proves and other.confidence >= POSSIBLE_OBJECT:
             parts = [possible_extension(other, side, MAX_HIDDEN_DEPTH, model) for side in SIDE_DIRECTIONS]

@@ -6,7 +6,6 @@ from utak.kb.mapping.occupancy import OPEN
 from utak.kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from utak.planner.advice import See
 from utak.planner.carrying.manipulation_oracle import ManipulationPlan
-from utak.planner.goals.placement import CERTAIN_OBJECT
 from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.screen.projection import dilate
 from utak.planner.sights.frontiers import Viewpoint, rim_viewpoint, touch_viewpoint, viewpoint_of
@@ -45,7 +44,7 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
     """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none."""
     # Also None when there is no floor beside it from which the robot did not feel it yet.
     things = [thing for thing in situation.model.objects if thing.name in found.aside]
-    unsure = (touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT)
+    unsure = (touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.felt_first)
     ends = (rim_viewpoint(situation.cost_maps, thing) for thing in things)
     return _first_see(unsure) or _first_see(look for look in ends if look is not None)
 

@@ -6,7 +6,6 @@ from utak.planner.advice import Act
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.verification import look_for_more
 from utak.planner.decision import Decision
-from utak.planner.goals.placement import CERTAIN_OBJECT
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.sights.frontiers import touch_viewpoint
 from utak.planner.situation import Situation
@@ -15,7 +14,7 @@ from utak.planner.subgoal_kind import SubgoalKind
 
 def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str = "") -> Decision | None:
     """Return the next command to bring an object to an end, or to find out what it is; None when there is none."""
-    if node.confidence < CERTAIN_OBJECT:
+    if node.felt_first:
         touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(turn.situation.cost_maps, node))
         return turn.look_if_reached(touch)
     if node.polygon is None or node.vague:

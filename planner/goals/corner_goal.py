@@ -22,7 +22,6 @@ from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.terms import Fact
 from utak.kb.world.model import MAX_CLEAR_PROBABILITY, Node
 from utak.planner.goals.placement import (
-    CERTAIN_OBJECT,
     NEGLIGIBLE_LENGTH,
     KnownEnds,
     Placement,
@@ -263,6 +262,6 @@ def _reachable_floor(node: Node, situation: Situation) -> Bools:
     mask: Bools = reach(cost_maps.free(0) | model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED
     for other in (one for one in model.objects if one.polygon is not None and one.movable > 0):
         under = model.mask(other.patch)
-        if other.confidence >= CERTAIN_OBJECT and (dilate(under, 1) & mask).any():
+        if not other.felt_first and (dilate(under, 1) & mask).any():
             mask = mask | under
     return mask

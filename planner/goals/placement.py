@@ -23,7 +23,6 @@ from utak.planner.sights.frontiers import Viewpoint
 from utak.planner.situation import Situation, neck_squares
 
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
-CERTAIN_OBJECT = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)
 POSSIBLE_OBJECT = 20  # percent: what is an object with less hardly is one (tuned on random worlds)
 NOOK_RANGE = 2  # squares around an object within which floor leads nowhere (tuned on random worlds)
 ANGLE_TOLERANCE = 2.0  # degrees within which an object has the orientation that it shall have (meaning of the goal)

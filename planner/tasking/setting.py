@@ -15,7 +15,7 @@ from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import NO_ROOM
-from utak.planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
+from utak.planner.goals.placement import Placement, meets_any_end, to_view_frame
 from utak.planner.goals.robot_goals import Destination, jointly, robot_stands_on
 from utak.planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
 from utak.planner.situation import Situation
@@ -197,7 +197,7 @@ def _common_squares(goals: Sequence[Fact], situation: Situation, where: Destinat
 
 def _can_be_carried(node: Node) -> bool:
     """Return whether an object may be carried in a plan: its outline is known, and nothing shows that it is fixed."""
-    return node.polygon is not None and node.movable > 0 and node.confidence >= CERTAIN_OBJECT
+    return node.polygon is not None and node.movable > 0 and not node.felt_first
 
 
 def place_name(goal: str, end: str) -> str:

@@ -21,6 +21,14 @@ PIXELS_PER_SQUARE = 10  # of a picture of a small table; a convention
 MAX_PICTURE_PIXELS = 640  # of the longer side of a picture; a convention
 LETTER_HUES = {"r": 0, "o": 30, "y": 55, "g": 120, "c": 180, "t": 175, "a": 210, "p": 285, "v": 270, "m": 315}
 BELIEVED_COLOUR, BELIEVED_THING_COLOUR = "#1f6fc4", "#c8322b"  # of floor and verge, and of objects
+DOOR_COLOUR = "#b86f00"
+
+CERTAIN_PERCENT = 95  # what is held with less is drawn as doubtful: 1 of 20, a convention
+HATCH = (  # of what may be something else
+    '<defs><pattern id="doubt" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(-45)">'
+    f'<path d="M0 0V7" stroke="{BELIEVED_THING_COLOUR}" stroke-width="2"/></pattern></defs>'
+)
+HATCHED = "fill:url(#doubt)"
 
 FACT_NUMBER = re.compile(r"-?[0-9]{1,9}")
 # An edge of an outline; numbers of at most nine digits.
@@ -88,7 +96,9 @@ class Canvas:
         width, height = self._size
         size = f'width="{width:.0f}" height="{height:.0f}" viewBox="0 0 {width:.1f} {height:.1f}"'
         ground = '<rect width="100%" height="100%" fill="#fff"/>'
-        return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{ground}{"".join(self._parts)}</svg>'
+        parts = "".join(self._parts)
+        defined = HATCH if HATCHED in parts else ""
+        return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{defined}{ground}{parts}</svg>'
 
     def _text(self, x: float, y: float) -> str:
         """Return a point in pixels, as SVG writes it."""
@@ -130,14 +140,19 @@ def step_svg(episode: Episode, line: dict[str, Any]) -> str:
 
 
 def belief_svg(facts: Sequence[str], place: DrawnPoint) -> str:
-    """Return a picture of what is believed alone, in the robot frame."""
+    """Return a picture of what is believed alone, in the robot frame: hatched and dashed what may be otherwise."""
     ends = [(east, north) for _, start, end, _ in segments(facts) for east, north in (start, end)] or [(0.0, 0.0)]
     east, north = ([float(value) for value in values] for values in zip(*ends, (place[0], place[1]), strict=True))
     canvas = Canvas(min(east) - 1, min(north) - 1, max(east) + 1, max(north) + 1)
+    doubtful = {name: share for name, share in _shares(facts, "object").items() if share < CERTAIN_PERCENT}
+    for name in doubtful:
+        canvas.polygons(_closed({start: end for node, start, end, _ in segments(facts) if node == name}), HATCHED)
     _draw_segments(canvas, PlacedFrame(0.0, 0.0, 0.0), facts)
     for name, (w, s, e, n) in dict(rectangles(facts)).items():
         if name not in ("floor", "verge"):
-            canvas.word((w + e) / 2 / FACT_UNITS_PER_SQUARE, (s + n) / 2 / FACT_UNITS_PER_SQUARE, name)
+            word = f"{name} {doubtful[name]} %" if name in doubtful else name
+            canvas.word((w + e) / 2 / FACT_UNITS_PER_SQUARE, (s + n) / 2 / FACT_UNITS_PER_SQUARE, word)
+    _draw_doors(canvas, facts)
     canvas.disc(place[0], place[1], 0.45, "fill:#2a7;stroke:#fff")
     return canvas.svg()
 
@@ -164,6 +179,45 @@ def rectangles(facts: Iterable[str]) -> Iterator[tuple[str, list[int]]]:
         name, arguments = atom_parts(fact) if fact.startswith("rect(") else ("", ())
         if name and len(arguments) == 5 and all(FACT_NUMBER.fullmatch(part) for part in arguments[1:]):
             yield arguments[0], [int(part) for part in arguments[1:]]
+
+
+def _closed(follows: dict[tuple[float, float], tuple[float, float]]) -> Iterator[list[tuple[float, float]]]:
+    """Yield the rings of points that follow one another."""
+    while follows:
+        here, end = follows.popitem()
+        ring = [here]
+        while end in follows:
+            ring.append(end)
+            end = follows.pop(end)
+        yield ring
+
+
+def _shares(facts: Iterable[str], kind: str) -> dict[str, int]:
+    """Return for each node of which kind/3 says `kind` its percent."""
+    found = {}
+    for fact in facts:
+        name, arguments = atom_parts(fact) if fact.startswith("kind(") else ("", ())
+        if name and len(arguments) == 3 and arguments[1] == kind and FACT_NUMBER.fullmatch(arguments[2]):
+            found[arguments[0]] = int(arguments[2])
+    return found
+
+
+def _draw_doors(canvas: Canvas, facts: Iterable[str]) -> None:
+    """Draw the lines of doors, dashed with their percent where they are in doubt."""
+    doors, lines = {}, {}
+    for fact in facts:
+        name, arguments = atom_parts(fact) if fact.startswith(("door(", "threshold(")) else ("", ())
+        if not all(FACT_NUMBER.fullmatch(part) for part in arguments[1:]):
+            continue
+        if name == "door" and len(arguments) == 2:
+            doors[arguments[0]] = int(arguments[1])
+        elif name == "threshold" and len(arguments) == 5:
+            lines[arguments[0]] = [int(part) / FACT_UNITS_PER_SQUARE for part in arguments[1:]]
+    for name, (e1, n1, e2, n2) in lines.items():
+        share = doors.get(name, 100)
+        dashes = ";stroke-dasharray:5 4" if share < CERTAIN_PERCENT else ""
+        canvas.lines([(e1, n1), (e2, n2)], f"stroke:{DOOR_COLOUR};stroke-width:3{dashes}")
+        canvas.word((e1 + e2) / 2, (n1 + n2) / 2, f"{name} {share} %" if share < 100 else name)
 
 
 def _rings(shape: Any) -> list[Sequence[DrawnPoint]]:

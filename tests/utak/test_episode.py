@@ -112,6 +112,20 @@ def test_a_world_without_facts_can_be_shown() -> None:
     assert repr(world) == "<World at step 0: 0 facts; objects: none>"
 
 
+def test_a_picture_shows_what_may_be_otherwise() -> None:
+    ring = [(0, 0, 400, 0), (400, 0, 400, 300), (400, 300, 0, 0)]
+    outline = [f"segment(o1,{n},{','.join(map(str, ends))},99)." for n, ends in enumerate(ring)]
+    place = ("rect(o1,0,0,400,300).", "threshold(d1,0,0,0,500).", *outline)
+    sure, doubt = (
+        utak.World(0, (*place, *facts), {"facts": [], "place": [1, 1]})._repr_svg_()
+        for facts in (("door(d1,99).", "kind(o1,object,97)."), ("door(d1,31).", "kind(o1,object,46)."))
+    )
+    for words in ("url(#doubt)", "o1 46 %", "d1 31 %", "dasharray"):
+        assert words in doubt
+        assert words not in sure
+    ElementTree.fromstring(doubt)
+
+
 def test_an_answer_says_how_many_rows_it_does_not_show() -> None:
     rows = tuple((number,) for number in range(MAX_ROWS_SHOWN + 1))
     for count, more, said in (

@@ -4,6 +4,8 @@ const RETINA_REACH = RETINA_ZONES.at(-1)[0]; // squares: the retina covers 32 x 
 const MARGIN = 2; // squares about what is believed to be floor or a thing
 const OUTSIDE_SHARE = 0.25; // of the table's greater side: how far beyond the table is shown at most
 const LABEL_SIZE = 11; // pixels
+const CERTAIN = 0.95; // what is held with less is drawn as doubtful: 1 of 20, a convention
+const MIN_WITHIN = 0.1; // squares: where the robot is known better than that, no area is drawn
 const MIN_SQUARE = 6; // pixels of a square's side: a table that has no room for them is scrolled
 
 // The area that both maps show, in squares of the picture: the table, and what is believed a little beyond it.
@@ -85,10 +87,13 @@ function drawBelief(at) {
   if (at.layers.has("unseen")) group.append(drawUnseen(at));
   const kinds = kindsOf(said), floor = outlines.get("floor") || [];
   group.append(svg("path", { class: "floor", "fill-rule": "evenodd", d: pathOf(ringsOf(floor), place, true) }));
+  group.append(...drawWithin(at), ...drawUnfelt(at));
   for (const [name, edges] of outlines) {
-    const kind = kinds.get(name) || { word: "object", sure: 0 };
+    const kind = kinds.get(name) || NO_KIND, rings = pathOf(ringsOf(edges), place, true);
     if (kind.word === "object") {
-      group.append(svg("path", { class: "thing", "fill-rule": "evenodd", d: pathOf(ringsOf(edges), place, true), "fill-opacity": rounded(0.1 + 0.5 * kind.sure) }));
+      group.append(svg("path", { class: "thing", "fill-rule": "evenodd", d: rings, "fill-opacity": rounded(0.1 + 0.5 * kind.sure) }));
+      if (kind.sure < CERTAIN) group.append(svg("path", { class: "doubt", "fill-rule": "evenodd", d: rings }));
+      group.append(...drawOtherShapes(at, name));
     }
     const bySure = new Map();
     for (const edge of edges) {
@@ -96,13 +101,14 @@ function drawBelief(at) {
       bySure.get(edge.sure).push([edge.from, edge.to]);
     }
     for (const [sure, lines] of bySure) {
-      group.append(svg("path", { class: `edge ${kind.word}`, d: pathOf(lines, place, false), "stroke-opacity": rounded(0.15 + 0.85 * sure) }));
+      group.append(svg("path", { class: `edge ${kind.word}${likeliestIsAnother(at, name) ? " other" : ""}`, d: pathOf(lines, place, false), "stroke-opacity": rounded(0.15 + 0.85 * sure) }));
     }
   }
   const doors = doorsOf(said);
   for (const [name, ends] of Object.entries(at.line.belief.necks || {})) {
     if (!Array.isArray(ends) || ends.length !== 2 || !ends.every(isPoint)) continue;
-    group.append(svg("path", { class: "door", d: pathOf([ends], place, false), "stroke-opacity": rounded(0.15 + 0.85 * (doors.get(name) ?? 1)) }), label(at, ends, place, name));
+    const sure = doors.get(name) ?? 1;
+    group.append(svg("path", { class: sure < CERTAIN ? "door open" : "door", d: pathOf([ends], place, false) }), label(at, ends, place, sure < 1 ? `${name} ${share(sure)}` : name));
   }
   for (const [name, east, north] of said("corner", 4).concat(said("corner", 3).filter(([name]) => !said("corner", 4).some(([other]) => other === name)))) {
     const point = [hundredths(east), hundredths(north)];
@@ -117,21 +123,72 @@ function drawBelief(at) {
     group.append(svg("path", { class: "track", d: trackOf(track, place) }));
   }
   for (const [name, edges] of outlines) {
-    if (!["floor", "verge"].includes(name)) group.append(label(at, edges.map((edge) => edge.from), place, nameOf(said, name)));
+    if (!["floor", "verge"].includes(name)) group.append(label(at, edges.map((edge) => edge.from), place, nameOf(said, name, kinds.get(name) || NO_KIND)));
   }
-  if (isPoint(at.line.belief.place)) {
-    const [x, y] = place(at.line.belief.place), size = 8 * at.unit;
-    group.append(svg("path", { class: "place", d: `M${x} ${y - size}L${x + size} ${y}L${x} ${y + size}L${x - size} ${y}Z` }, svg("title", {}, "where the robot believes it is")));
-  }
+  group.append(...drawPlace(at));
   return group;
 }
 
-// What each node most likely is: { word, sure }.
+// Hatched: parts of the verge that may be things, since they were never felt.
+function drawUnfelt(at) {
+  const { unfelt } = at.line.belief, rings = Array.isArray(unfelt) ? unfelt.filter(isRing) : [];
+  if (!rings.length) return [];
+  return [svg("path", { class: "doubt wall", "fill-rule": "evenodd", d: pathOf(rings, at.places.robot, true) }, svg("title", {}, "never felt: this may be a thing"))];
+}
+
+// The outline that a thing would have if it were of the next class that may well be, with its percent.
+function drawOtherShapes(at, name) {
+  const shares = sharesOfShapes(at.said, name), best = bestOf(shares), drawn = [];
+  for (const [shape, ring] of Object.entries(otherOutlines(at, name))) {
+    if (!isRing(ring) || !shares.has(shape)) continue;
+    const title = svg("title", {}, shown(`${name}: ${shape} ${share(shares.get(shape))}`));
+    drawn.push(svg("path", { class: shape === best ? "edge object" : "edge object other", d: pathOf([ring], at.places.robot, true) }, title));
+  }
+  return drawn;
+}
+const isRing = (ring) => Array.isArray(ring) && ring.length > 2 && ring.every(isPoint);
+function otherOutlines(at, name) {
+  const all = at.line.belief.outlines, found = all !== null && typeof all === "object" && Object.hasOwn(all, name) ? all[name] : null;
+  return found !== null && typeof found === "object" ? found : {};
+}
+// Whether rules make another class the likeliest than the one whose outline the facts have.
+const likeliestIsAnother = (at, name) => Object.hasOwn(otherOutlines(at, name), bestOf(sharesOfShapes(at.said, name)));
+
+// Where the robot may be, if that is more than a place.
+function drawWithin(at) {
+  const within = at.line.belief.place_within;
+  if (!isRing(within) || Math.hypot(within[2][0] - within[0][0], within[2][1] - within[0][1]) <= MIN_WITHIN) return [];
+  return [svg("path", { class: "within", d: pathOf([within], at.places.robot, true) }, svg("title", {}, "the robot is somewhere in here"))];
+}
+
+// Where the robot believes it is: the place, and its rooms where none of them is almost certain.
+function drawPlace(at) {
+  const { place, place_within: within } = at.line.belief, drawn = [];
+  if (!isPoint(place)) return drawn;
+  const [x, y] = at.places.robot(place), size = 8 * at.unit, isLost = Array.isArray(within) && !within.length;
+  const tip = isLost ? "the robot is lost: it may be anywhere" : "where the robot believes it is";
+  drawn.push(svg("path", { class: isLost ? "place lost" : "place", d: `M${x} ${y - size}L${x + size} ${y}L${x} ${y + size}L${x - size} ${y}Z` }, svg("title", {}, tip)));
+  const doubt = isLost ? "lost" : roomsInDoubt(at.said, "org");
+  if (doubt) drawn.push(label(at, [[place[0], place[1] + 8 * at.unit]], at.places.robot, doubt));
+  return drawn;
+}
+
+// The rooms of a node with their percent, where none of them is almost certain; else "".
+function roomsInDoubt(said, name) {
+  const rooms = (roomsOf(said).get(name) || []).sort((a, b) => b.sure - a.sure);
+  return rooms.length && rooms[0].sure < CERTAIN ? `in ${rooms.map(({ room, sure }) => `${room} ${share(sure)}`).join(", ")}` : "";
+}
+const share = (sure) => `${Math.round(100 * sure)} %`;
+
+// What each node is drawn as, with all that it may be: { word, sure, all: [[word, sure]] }. A node that may be a thing is
+// one with an outline of its own, so it is drawn as a thing, however likely it is verge.
+const NO_KIND = { word: "object", sure: 0, all: [] };
 function kindsOf(said) {
   const kinds = new Map();
   for (const [name, word, sure] of said("kind", 3)) {
-    const kind = { word: ["floor", "verge", "object"].includes(word) ? word : "object", sure: percent(sure) };
-    if (!kinds.has(name) || kinds.get(name).sure < kind.sure) kinds.set(name, kind);
+    const all = [...(kinds.get(name)?.all || []), [word, percent(sure)]].sort((a, b) => b[1] - a[1]);
+    const thing = all.find(([one]) => one === "object") || all[0], known = ["floor", "verge", "object"].includes(thing[0]);
+    kinds.set(name, { word: known ? thing[0] : "object", sure: thing[1], all });
   }
   return kinds;
 }
@@ -151,13 +208,20 @@ function roomsOf(said) {
   return rooms;
 }
 
-// A node with its likeliest shape: "o2 l_shape 98".
-function nameOf(said, name) {
-  const shapes = said("shape", 3).filter((args) => args[0] === name && args[1] !== "polygon");
-  const best = shapes.reduce((a, b) => (a && Number(a[2]) >= Number(b[2]) ? a : b), null);
+// A node with its likeliest shape: "o2 l_shape 98", and with its kinds if these are in doubt: "o2 object 46 %, verge 54 %".
+function nameOf(said, name, kind) {
+  const shares = sharesOfShapes(said, name), best = bestOf(shares);
   const held = said("held", 1).some((args) => args[0] === name) ? " held" : "";
-  return best && Number(best[2]) > 0 ? `${name} ${best[1]} ${best[2]}${held}` : name + held;
+  if (kind.sure < CERTAIN && kind.all.length) {
+    return `${name} ${kind.all.filter(([, sure]) => sure >= 1 - CERTAIN).map(([word, sure]) => `${word} ${share(sure)}`).join(", ")}${held}`;
+  }
+  return best ? `${name} ${best} ${Math.round(100 * shares.get(best))}${held}` : name + held;
 }
+
+// How sure each class of shapes is for a node, from 0 to 1, and the likeliest one ("" for none).
+const WHOLE_GROUPS = ["rectangle", "polygon"]; // of classes
+const sharesOfShapes = (said, name) => new Map(said("shape", 3).filter((args) => args[0] === name && !WHOLE_GROUPS.includes(args[1])).map(([, shape, sure]) => [shape, percent(sure)]));
+const bestOf = (shares) => [...shares].reduce((best, [shape, sure]) => (sure > (shares.get(best) || 0) ? shape : best), "");
 
 // Hatching where no impression reached, as far as the places of impressions are known.
 function drawUnseen(at) {

@@ -83,11 +83,11 @@ function worldPanel(at) {
     list.append(html("li", {}, html("b", {}, shown(room)), (rooms.get("org") || []).some((where) => where.room === room) ? ` (the robot is here${inPercent(rooms.get("org").find((where) => where.room === room))})` : "", unseen ? `: ${shown(unseen)} squares unseen` : "", doors.length ? `; ${doors.join(", ")}` : ""));
   }
   for (const [door, width] of said("width", 2)) list.append(html("li", {}, html("b", {}, shown(door)), `: a door${inPercent({ sure: doorsSure.get(door) ?? 1 })}, ${rounded(hundredths(width))} squares wide`));
-  for (const [name, { word, sure }] of kinds) {
+  for (const [name, { all }] of kinds) {
     if (["org", "floor", "verge"].includes(name)) continue;
     const shapes = said("shape", 3).filter((args) => args[0] === name && Number(args[2]) > 0).sort((a, b) => b[2] - a[2]).slice(0, 4).map((args) => `${shown(args[1])} ${shown(args[2])}`);
     const colour = said("colour", 3).filter((args) => args[0] === name).map((args) => shown(args[1]));
-    list.append(html("li", {}, html("b", {}, shown(name)), `: ${word} ${Math.round(100 * sure)}`, colour.length ? `, colour ${colour.join("/")}` : "", rooms.has(name) ? `, in ${rooms.get(name).map((where) => shown(where.room) + inPercent(where)).join(" or ")}` : "", shapes.length ? `; ${shapes.join(", ")}` : ""));
+    list.append(html("li", {}, html("b", {}, shown(name)), ": " + all.map(([word, sure]) => `${shown(word)} ${Math.round(100 * sure)}`).join(" or "), colour.length ? `, colour ${colour.join("/")}` : "", rooms.has(name) ? `, in ${rooms.get(name).map((where) => shown(where.room) + inPercent(where)).join(" or ")}` : "", shapes.length ? `; ${shapes.join(", ")}` : ""));
   }
   return list.children.length ? [list] : [html("p", { class: "quiet" }, "Nothing is believed yet.")];
 }

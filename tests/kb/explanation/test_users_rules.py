@@ -20,7 +20,7 @@ HEAVY = """\
 heavy(R) :- mass(R, N), N > 50.
 %! says heavy(R) "region {R} is heavy" else "nothing seen so far shows that region {R} is heavy"
 
-kind(R, object, 97) :- heavy(R), not touched(R, b).
+kind(R, object, 96) :- heavy(R), not touched(R, b).
 """
 FACTS = ["region(a,nonzero,100)", "extent(a,3)", "mass(a,72)"]
 
@@ -37,7 +37,7 @@ def answer(rules: str, facts: list[str]) -> list[str]:
 
 def test_a_users_rule_stands_in_the_proof_with_its_sentence(tmp_path: Path) -> None:
     rules = written(tmp_path, HEAVY)
-    proof = explain_decision("interpretation", FACTS, answer(rules, FACTS), "kind(a,object,97)", [rules])
+    proof = explain_decision("interpretation", FACTS, answer(rules, FACTS), "kind(a,object,96)", [rules])
     assert proof.root.instance is not None
     assert (proof.root.instance.rule.file, proof.root.instance.rule.line) == (rules, 5)
     assert proof.root.sentence == proof.root.instance.rule.text  # a rule without a sentence stands for itself
@@ -50,7 +50,7 @@ def test_a_users_rule_stands_in_the_proof_with_its_sentence(tmp_path: Path) -> N
 def test_what_a_users_rule_lacks_is_found(tmp_path: Path) -> None:
     rules = written(tmp_path, HEAVY)
     facts = ["region(a,nonzero,100)", "extent(a,3)"]
-    found = explain_absence("interpretation", facts, answer(rules, facts), "kind(a,object,97)", [rules])
+    found = explain_absence("interpretation", facts, answer(rules, facts), "kind(a,object,96)", [rules])
     assert (found.missing, found.in_way) == (("mass(a,51)",), ())
     assert found.proof is not None
     assert any(node.sentence.startswith("Region a is heavy: 5.1 squares") for node in nodes(found.proof.root))
@@ -103,7 +103,7 @@ def test_a_rule_that_never_ends_is_given_up_in_its_own_process(tmp_path: Path) -
     rules = written(tmp_path, "count_up(0).\ncount_up(N+1) :- count_up(N), region(_, _, _).\n")
     program = DecisionProgram("interpretation", [rules], seconds=0.5)
     with pytest.raises(ExplanationError, match="given up"):
-        program.ask({"task": "trace", "facts": FACTS, "answer": ["kind(a,object,97)"]})
+        program.ask({"task": "trace", "facts": FACTS, "answer": ["kind(a,object,96)"]})
 
 
 BELIEF = [

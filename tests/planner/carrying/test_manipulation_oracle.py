@@ -165,7 +165,8 @@ def test_an_obstacle_that_may_be_part_of_the_object_proves_nothing(inexact: bool
     x, y = model.view.west + 11, model.view.south + 5
     small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == OCCUPIED
-    beside = Node("o1", "object", POSSIBLE_OBJECT - 1, "part1", patch_of_polygon(small), 0, polygon=small)
+    squares = patch_of_polygon(small)
+    beside = Node("o1", "object", POSSIBLE_OBJECT - 1, "part1", squares, 0, polygon=small, felt_first=True)
     node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square, moved=True, inexact=inexact)
     model = replace(model, objects=(beside, node))
     answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
@@ -186,7 +187,8 @@ def test_an_immovable_obstacle_may_cover_the_squares_at_its_rim_in_part(movable:
     x, y = model.view.west + 11 - half, model.view.south + 6 - half
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == OCCUPIED
     fixed, square = shapely.box(x, y, x + thick, y + thick), shapely.box(x - 6, y - 2, x - 2, y + 2)
-    other = Node("o1", "object", 60, "part1", patch_of_polygon(fixed), 0, polygon=fixed, movable=movable)
+    squares = patch_of_polygon(fixed)
+    other = Node("o1", "object", 60, "part1", squares, 0, polygon=fixed, movable=movable, felt_first=True)
     node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square)
     model = replace(model, objects=(other, node))
     answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 12))}), situation_of(model))

@@ -40,7 +40,7 @@ def hostile(episode: Episode) -> Episode:
     odd: list[Any] = [None, True, -1, 1.5, "x" * 5000, [], {}, [[]], [{"points": 3}], {"__proto__": {"a": 1}}, HOSTILE]
     chance = random.Random(1)
     keys = ("place", "lattice", "pose", "cells", "bound", "least", "most", "status", "explained", "seen_from", "origin")
-    keys += ("map_from", "solved", "regions", "routes", "necks", "moved")
+    keys += ("map_from", "solved", "regions", "routes", "necks", "moved", "outlines", "unfelt", "place_within")
     for line in steps:
         line["why"] = HOSTILE * 40
         line["objects"]["__proto__"] = [[1, 1], [2, 1], [2, 2]]

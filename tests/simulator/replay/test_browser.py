@@ -107,7 +107,7 @@ def test_texts_of_strangers_do_nothing(browser: Browser, carried: tuple[Path, Ep
     path = tmp_path / "hostile.html"
     path.write_text(replay_page(episode), encoding="utf-8")
     browser.open(path)
-    assert_shows(browser, episode, [5, 0, 11, 3, len(episode.steps) - 1])
+    assert_shows(browser, episode, [5, 0, 7, 3, len(episode.steps) - 1])
     assert browser.run("document.title").startswith("Utak: </script><script>")
     shown = browser.run("document.body.innerText")
     assert "\\u001b[31m \\u202e \\ud800" in shown
@@ -256,6 +256,56 @@ def test_lines_of_doors_that_were_weighed_are_drawn(
         drawn += count - routes
     assert drawn > 0
     assert browser.complaints() == []
+
+
+def doubting(episode: Episode) -> Episode:
+    """Return an episode of two steps: in the first all is in doubt, in the second the robot is lost."""
+    line = episode.steps[3]
+    told = {"kind(o1,object,46).", "kind(o1,verge,54).", "door(d9,31).", "in(org,r1,43).", "in(org,r2,36)."}
+    told |= {"shape(o1,square,60).", "shape(o1,brick,20).", "shape(o1,polygon,99)."}
+    replaced = ("kind(o1,", "shape(o1,", "door(", "in(org,")
+    facts = sorted({fact for fact in line["belief"]["facts"] if not fact.startswith(replaced)} | told)
+    corner = [[0, 0], [4, 0], [4, 3]]
+    belief = {**line["belief"], "facts": facts, "outlines": {"o1": {"brick": corner}}, "unfelt": [corner, corner]}
+    belief |= {"necks": {"d9": [[1, 1], [2, 1]]}, "place_within": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    steps = [{**line, "step": 0, "belief": belief}, {**line, "step": 1, "belief": {**belief, "place_within": []}}]
+    return Episode(episode.header, tuple(steps), None)
+
+
+def test_what_may_be_otherwise_is_drawn(browser: Browser, carried: tuple[Path, Episode], tmp_path: Path) -> None:
+    """Things and pieces of walls are hatched, other outlines dotted, doors dashed; areas say where the robot may be."""
+    path = tmp_path / "doubt.html"
+    path.write_text(replay_page(doubting(carried[1])))
+    browser.open(path)
+
+    def count(what: str) -> int:
+        return int(browser.run(f"document.querySelectorAll('#belief-map {what}').length"))
+
+    def text() -> str:
+        return str(browser.run("document.querySelector('#belief-map').textContent"))
+
+    assert [count(".doubt:not(.wall)"), count(".doubt.wall"), count(".edge.other"), count(".door.open")] == [1] * 4
+    assert [count(".within"), count(".lost")] == [1, 0]
+    for words in ("o1 verge 54 %, object 46 %", "o1: brick 20 %", "d9 31 %", "in r1 43 %, r2 36 %"):
+        assert words in text()
+    browser.run("utak.player.show(1)")
+    assert [count(".within"), count(".place.lost")] == [0, 1]
+    assert "lost" in text()
+    assert browser.complaints() == []
+
+
+def test_what_is_certain_is_drawn_plain(browser: Browser, page: Path, carried: tuple[Path, Episode]) -> None:
+    """Hatched is just what the facts of the step hold to be a thing with less than 95 percent."""
+    browser.open(page)
+    for line in carried[1].steps:
+        browser.run(f"utak.player.show({line['step']})")
+        shares = [
+            int(fact.removesuffix(").").rpartition(",")[2])
+            for fact in line["belief"]["facts"]
+            if fact.startswith("kind(o") and ",object," in fact and fact.count(",") == 2
+        ]
+        hatched = browser.run("document.querySelectorAll('#belief-map .doubt:not(.wall)').length")
+        assert hatched == sum(share < 95 for share in shares)
 
 
 @pytest.mark.parametrize("width", [390, 1280])

@@ -1,0 +1,55 @@
+"""Whether things can be moved, and are felt before: what is known of each goes in, and kb/asp/movable.lp decides."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from utak.kb.language.atoms import signature_of
+from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.user_rules import predicates_read
+
+MOVABLE = KB_ENCODINGS / "movable.lp"
+
+
+class MotionHistory(NamedTuple):
+    """A thing, and what motions with it came to."""
+
+    name: str
+    confidence: int  # percent of belief that it is an object
+    length: int  # its longer side in squares, rounded up
+    moved: bool = False  # whether the robot has moved it
+    unmoved: int = 0  # how many of the last motions in a row did not move it
+
+
+class Movability(NamedTuple):
+    """Whether a thing can be moved."""
+
+    percent: int  # of belief that it can be moved, if it is one
+    felt_first: bool  # whether it is felt before it is moved, for it may be a piece of wall
+
+
+def movabilities(
+    things: Iterable[MotionHistory], rules: tuple[Path, ...] = (), world: Iterable[str] = ()
+) -> Mapping[str, Movability]:
+    """Return by name whether things can be moved; world: facts that rules may read besides."""
+    facts = [fact for thing in things for fact in _facts_of(thing)]
+    named = predicates_read(MOVABLE.stem, rules)
+    facts += [fact for fact in world if signature_of(fact) in named]
+    found: dict[str, dict[str, list[int]]] = {"tried": {}, "movable": {}}
+    felt_first = set()
+    for atom in (solve([MOVABLE, *rules], facts) if facts else None) or ():
+        if atom.name in found:
+            found[atom.name].setdefault(str(atom.arguments[0]), []).append(atom.arguments[1].number)
+        elif atom.match("felt_first", 1):
+            felt_first.add(str(atom.arguments[0]))
+    stated = found["tried"] | found["movable"]
+    return {name: Movability(max(percents), name in felt_first) for name, percents in stated.items()}
+
+
+def _facts_of(thing: MotionHistory) -> Iterable[str]:
+    """Yield what is known of a thing as facts, without full stops."""
+    yield from (f"thing({thing.name})", f"kind({thing.name},object,{thing.confidence})")
+    yield f"length({thing.name},{thing.length})"
+    yield from [f"moved({thing.name})"] * thing.moved
+    yield from [f"unmoved({thing.name},{thing.unmoved})"] * (thing.unmoved > 0)
