@@ -1,6 +1,6 @@
-"""Count priors in random worlds and write kb/asp/priors.lp, or with --places kb/asp/priors_of_places.lp.
+"""Count priors in random worlds and write kb/asp/priors.lp, or with --whereabouts kb/asp/priors_of_whereabouts.lp.
 
-    python -m benchmarks.priors --worlds 250 --seed 5000 [--places] [--noise 0,0.05] [--samples FILE] [-o FILE]
+    python -m benchmarks.priors --worlds 250 --seed 5000 [--whereabouts] [--noise 0,0.05] [--samples FILE] [-o FILE]
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
 alike: the first step, the last one, and those in between that part the run evenly. Progress goes to stderr. --samples
@@ -19,14 +19,14 @@ from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.runs import LookedAt, numbers, watched
 from benchmarks.calibration.statements import statements
 from benchmarks.harness.judging import CHECKOUT
-from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_pieces, counted_places
+from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_pieces, counted_whereabouts
 from benchmarks.priors.measures import FitSeen, RegionSeen, fits_seen, regions_seen
-from benchmarks.priors.places import PieceSeen, PlaceSeen, pieces_seen, places_seen
+from benchmarks.priors.whereabouts import PieceSeen, WhereaboutSeen, pieces_seen, whereabouts_seen
 from benchmarks.priors.written import text
 from utak.simulator.run.warming import warm_all
 
 PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
-PLACES_FILE = PRIORS_FILE.with_name("priors_of_places.lp")
+WHEREABOUTS_FILE = PRIORS_FILE.with_name("priors_of_whereabouts.lp")
 WHOLE_OF_KINDS = "interpretation.lp and shapes.lp"
 
 
@@ -38,16 +38,16 @@ class CountedMoment(NamedTuple):
     untried: tuple[bool, ...]  # of the objects never moved, which are objects in truth: whether each can be moved
 
 
-class PlacesMoment(NamedTuple):
+class WhereaboutsMoment(NamedTuple):
     """The places and pieces of one moment that are counted."""
 
-    places: tuple[PlaceSeen, ...]
+    places: tuple[WhereaboutSeen, ...]
     pieces: tuple[PieceSeen, ...]
 
 
-def places_noted(look: LookedAt) -> PlacesMoment:
+def whereabouts_noted(look: LookedAt) -> WhereaboutsMoment:
     """Return what is counted of a moment about places and pieces."""
-    return PlacesMoment(tuple(places_seen(look)), tuple(pieces_seen(look)))
+    return WhereaboutsMoment(tuple(whereabouts_seen(look)), tuple(pieces_seen(look)))
 
 
 def noted(look: LookedAt) -> CountedMoment:
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the worlds, count, and write the file; return 0."""
     given = _parser().parse_args(arguments)
     samples, moments = given.samples, list[Any]()
-    note, read = (places_noted, _read_places) if given.places else (noted, _read)
+    note, read = (whereabouts_noted, _read_whereabouts) if given.whereabouts else (noted, _read)
     if given.recount:
         moments = [read(line) for line in samples.read_text().splitlines()]
     else:
@@ -81,14 +81,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
     command = (
-        f"python -m benchmarks.priors{' --places' * given.places} --worlds {given.worlds} --seed {given.seed} "
+        f"python -m benchmarks.priors{' --whereabouts' * given.whereabouts} --worlds {given.worlds} --seed {given.seed} "
         f"--max-steps {given.max_steps} --parts {given.parts} "
         f"--noise {','.join(f'{noise:g}' for noise in given.noise)}"
     )
-    if given.places:
+    if given.whereabouts:
         command += f" --seconds {given.seconds}"
-    output = given.output or (PLACES_FILE if given.places else PRIORS_FILE)
-    output.write_text((places_written if given.places else written)(moments, command, given.worlds))
+    output = given.output or (WHEREABOUTS_FILE if given.whereabouts else PRIORS_FILE)
+    output.write_text((whereabouts_written if given.whereabouts else written)(moments, command, given.worlds))
     return 0
 
 
@@ -104,20 +104,20 @@ def written(moments: Sequence[CountedMoment], command: str, worlds: int) -> str:
     return text([*counted_kinds(regions), *counted_classes(fits)], movable, [command, counts], WHOLE_OF_KINDS)
 
 
-def places_written(moments: Sequence[PlacesMoment], command: str, worlds: int) -> str:
+def whereabouts_written(moments: Sequence[WhereaboutsMoment], command: str, worlds: int) -> str:
     """Return the file of priors of places and pieces that some moments give."""
     places = [place for moment in moments for place in moment.places]
     pieces = [piece for moment in moments for piece in moment.pieces]
     counts = (
         f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} places, {len(pieces)} pairs of pieces"
     )
-    return text([*counted_places(places), *counted_pieces(pieces)], None, [command, counts], "chances.lp")
+    return text([*counted_whereabouts(places), *counted_pieces(pieces)], None, [command, counts], "chances.lp")
 
 
-def _read_places(line: str) -> PlacesMoment:
+def _read_whereabouts(line: str) -> WhereaboutsMoment:
     """Return a moment of places and pieces from its line of JSON."""
     places, pieces = json.loads(line)
-    return PlacesMoment(tuple(PlaceSeen(*one) for one in places), tuple(PieceSeen(*one) for one in pieces))
+    return WhereaboutsMoment(tuple(WhereaboutSeen(*one) for one in places), tuple(PieceSeen(*one) for one in pieces))
 
 
 def _read(line: str) -> CountedMoment:
@@ -141,7 +141,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--samples", type=Path, help="what was measured, a JSON line a moment; added to")
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
     parser.add_argument("-o", "--output", type=Path, help="the file (default that of kb/asp)")
-    parser.add_argument("--places", action="store_true", help="count places of things and pieces instead of kinds")
+    parser.add_argument("--whereabouts", action="store_true", help="count places of things and pieces instead of kinds")
     return parser
 
 

@@ -17,13 +17,13 @@ from benchmarks.priors.bins import (
     NONE_MISFIT,
     OBJECT_MASS,
     OPENNESS,
-    PLACE_MEASURE,
+    WHEREABOUT_MEASURE,
     WHOLE,
     Bin,
     bin_of,
 )
 from benchmarks.priors.measures import FitSeen, RegionSeen
-from benchmarks.priors.places import PieceSeen, PlaceSeen
+from benchmarks.priors.whereabouts import PieceSeen, WhereaboutSeen
 
 THOUSAND = 1000
 MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
@@ -104,10 +104,10 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
         yield Counted("counted_none", (misfit,), sum(fit.shape == NO_CLASS for fit in there), len(there))
 
 
-def counted_places(places: Iterable[PlaceSeen]) -> Iterator[Counted]:
+def counted_whereabouts(places: Iterable[WhereaboutSeen]) -> Iterator[Counted]:
     """Yield how many places of each case were where the thing was; those that a claim is against are left out."""
     seen = [place for place in places if not place.against]
-    for case, measures in PLACE_MEASURE.items():
+    for case, measures in WHEREABOUT_MEASURE.items():
         for measure in measures:
             there = [place for place in seen if place.case == case and measure.holds(place.measure)]
             yield Counted("counted_place", (case, measure), sum(place.true for place in there), len(there))

@@ -18,7 +18,7 @@ SHARED_FILES = {
     "interpretation": ("priors",),
     "shapes": ("priors",),
     "movable": ("priors",),
-    "chances": ("priors_of_places",),
+    "chances": ("priors_of_whereabouts",),
 }
 SHARED_PARTS = frozenset(
     name for names in SHARED_FILES.values() for name in names

@@ -7,7 +7,7 @@ from benchmarks.calibration.runs import LookedAt
 from utak.kb.language.atoms import atom_parts
 
 
-class PlaceSeen(NamedTuple):
+class WhereaboutSeen(NamedTuple):
     """A place where a thing may be that the task names and nobody saw."""
 
     parameter: str
@@ -26,7 +26,7 @@ class PieceSeen(NamedTuple):
     one: bool  # whether they are one thing
 
 
-def places_seen(look: LookedAt) -> Iterator[PlaceSeen]:
+def whereabouts_seen(look: LookedAt) -> Iterator[WhereaboutSeen]:
     """Yield the places of things that the task names, where it is known which things these are."""
     given = _given(look)
     true = {x: look.moment.alternatives.place(x) for name, (x, *_) in given if name == "unbound"}
@@ -36,7 +36,7 @@ def places_seen(look: LookedAt) -> Iterator[PlaceSeen]:
         if name == "place" and true[arguments[0]] is not None:
             x, place, case, measure = arguments
             said = [int(c) for y, room, c in claimed if x == y and _is_against(place, case, room, following)]
-            yield PlaceSeen(x, place, case, int(measure), max(said, default=0), place == true[x])
+            yield WhereaboutSeen(x, place, case, int(measure), max(said, default=0), place == true[x])
 
 
 def _is_against(place: str, case: str, room: str, following: set[str]) -> bool:
