@@ -63,7 +63,7 @@ def _reliability(predicate: str, held: Sequence[Held]) -> Reliability:
         for number, there in sorted(bins.items())
     }
     error = sum(row.number * abs(row.confidence - row.true) for row in rows.values()) / len(held)
-    wrong = tuple(one for one in held if one.statement.confidence == CERTAIN and not one.statement.true)
+    wrong = tuple(one for one in held if one.statement.confidence == CERTAIN and one.statement.true < 1)
     count: dict[int, int] = defaultdict(int)
     for total in sums.values():
         count[total] += 1

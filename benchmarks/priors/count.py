@@ -16,11 +16,12 @@ from benchmarks.priors.bins import (
     NONE_MISFIT,
     OBJECT_MASS,
     OPENNESS,
+    PLACES,
     WHOLE,
     Bin,
     bin_of,
 )
-from benchmarks.priors.measures import FitSeen, RegionSeen
+from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
 
 THOUSAND = 1000
 MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
@@ -99,3 +100,12 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
     for misfit in NONE_MISFIT:
         there = [fit for fit in wrong if misfit.holds(fit.fits[0][1])]
         yield Counted("counted_none", (misfit,), sum(fit.shape == NO_CLASS for fit in there), len(there))
+
+
+def counted_places(places: Iterable[PlaceSeen]) -> Iterator[Counted]:
+    """Yield how often facts about places were true, by their case and by what was measured."""
+    seen = list(places)
+    for case, measures in PLACES.items():
+        for measure in measures:
+            there = [place for place in seen if place.case == case and measure.holds(place.measure)]
+            yield Counted("counted_chance", (case, measure), sum(place.true for place in there), len(there))

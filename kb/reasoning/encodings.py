@@ -15,8 +15,9 @@ ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp"
 SUFFIX = ".lp"  # of the files of encodings
 # By the name of an encoding: files beside it that are a part of it, and of others, too.
 SHARED_FILES = {"interpretation": ("priors",), "shapes": ("priors",)}
+COUNTED_FACTS = ("place_priors",)  # files of facts alone, which Python reads
 SHARED_PARTS = frozenset(
-    name for names in SHARED_FILES.values() for name in names
+    [*COUNTED_FACTS, *(name for names in SHARED_FILES.values() for name in names)]
 )  # they are no encodings by themselves
 # Bounded searches look for the best answer from below first (unsatisfiable cores), which ends where branch and bound
 # does not; measured by benchmarks.orders.strategies. Where it does not end, branch and bound tells the best so far.
@@ -77,3 +78,15 @@ def encoding_constant(encoding: Path, name: str) -> int:
     if symbol is None:
         raise KeyError(f"{encoding.name} defines no constant {name}")
     return symbol.number
+
+
+@cache
+def encoding_facts(path: Path, name: str, arity: int) -> tuple[tuple[str | int, ...], ...]:
+    """Return the arguments of the facts of a predicate that a file states, names as text."""
+    control = clingo.Control()
+    control.add("base", [], path.read_text(encoding="utf-8"))
+    control.ground([("base", [])])
+    return tuple(
+        tuple(a.number if a.type == clingo.SymbolType.Number else str(a) for a in atom.symbol.arguments)
+        for atom in control.symbolic_atoms.by_signature(name, arity)
+    )

@@ -81,7 +81,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
-        separated.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
+        separated.append(region_of(thing, f"part{label}", (view.state == OCCUPIED) & view.sure, view.probability))
         kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE, "verge": 100 - FELT_OBJECT_CONFIDENCE}
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
