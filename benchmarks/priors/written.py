@@ -7,7 +7,7 @@ from itertools import groupby
 from benchmarks.priors.bins import Bin
 from benchmarks.priors.count import Counted
 
-Words = Mapping[str, tuple[str, str, str]]
+Documented = Mapping[str, tuple[str, str, str]]
 # By predicate: its arguments; what it says, as documentation; the same as words of explanations.
 WORDS = {
     "counted_solid": (
@@ -41,7 +41,7 @@ WORDS = {
         "of 1000 things whose first class leaves {L} to {U} squares wrong and is not the true one, {W} were of none",
     ),
 }
-PLACE_WORDS = {
+COUNTED_OF_PLACES = {
     "counted_chance": (
         "K, L, U, W",
         "Of 1000 facts about places of case K (kb/world/chances.py) that were measured with L to U percent, W were "
@@ -75,7 +75,7 @@ def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> s
             lines += _constant(*CONSTANTS[str(row.given[0])], row)
     about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
     lines += _constant("untried_movable", about, movable)
-    lines += ["", "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
+    lines += ["", "% ---- Documented (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
     for predicate, (arguments, _, words) in WORDS.items():
         lines += _wrapped(f"{predicate}({arguments})", words)
     return "\n".join(lines) + "\n"
@@ -91,16 +91,16 @@ def places_text(counted: Sequence[Counted], told: Iterable[str]) -> str:
         "% It was made so, and is made anew by the same command:",
         *(f"%     {line}" for line in told),
         "",
-        *_facts(counted, PLACE_WORDS),
-        "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----",
+        *_facts(counted, COUNTED_OF_PLACES),
+        "% ---- Documented (kb/reasoning/sentences.py): how each predicate reads in explanations ----",
         "",
     ]
-    for predicate, (arguments, _, words) in PLACE_WORDS.items():
+    for predicate, (arguments, _, words) in COUNTED_OF_PLACES.items():
         lines += _wrapped(f"{predicate}({arguments})", words)
     return "\n".join(lines) + "\n"
 
 
-def _facts(counted: Sequence[Counted], words: Words) -> list[str]:
+def _facts(counted: Sequence[Counted], words: Documented) -> list[str]:
     """Return the facts of predicates, a row each, with what documents them."""
     lines: list[str] = []
     for predicate, rows in groupby(counted, lambda row: row.predicate):
@@ -113,7 +113,7 @@ def _facts(counted: Sequence[Counted], words: Words) -> list[str]:
     return lines
 
 
-def _documented(predicate: str, words: Words) -> list[str]:
+def _documented(predicate: str, words: Documented) -> list[str]:
     """Return the block that documents a predicate."""
     arguments, what, _ = words[predicate]
     return [
