@@ -75,7 +75,7 @@ def text(counted: Sequence[Counted], movable: Counted, told: Iterable[str]) -> s
             lines += _constant(*CONSTANTS[str(row.given[0])], row)
     about = "Percent: of objects that were never tried, so many could be moved; kb/world/objects.py reads it."
     lines += _constant("untried_movable", about, movable)
-    lines += ["", "% ---- Documented (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
+    lines += ["", "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
     for predicate, (arguments, _, words) in WORDS.items():
         lines += _wrapped(f"{predicate}({arguments})", words)
     return "\n".join(lines) + "\n"
@@ -92,7 +92,7 @@ def places_text(counted: Sequence[Counted], told: Iterable[str]) -> str:
         *(f"%     {line}" for line in told),
         "",
         *_facts(counted, COUNTED_OF_PLACES),
-        "% ---- Documented (kb/reasoning/sentences.py): how each predicate reads in explanations ----",
+        "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----",
         "",
     ]
     for predicate, (arguments, _, words) in COUNTED_OF_PLACES.items():
