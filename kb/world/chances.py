@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats
-from utak.geometry.raster.components import with_edge_neighbours
+from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
-from utak.kb.perception.interpretation import counted_percent
+from utak.kb.perception.interpretation import LONGEST_OBJECT, counted_percent
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from utak.kb.perception.regions import extents
 from utak.kb.world.corners import Corner
 from utak.kb.world.doors import ENCODED_DOOR_RATIO, jamb
 from utak.kb.world.model import ROOT_NODE, VERGE_NODE, Node, WorldModel
@@ -87,7 +88,7 @@ class Chances:
         shares.pop(NO_ROOM, None)
         if not shares:
             return []
-        if exact and self.is_sure and is_clear and all(map(self._is_whole, shares)) and len(shares) == 1:
+        if exact and self.is_sure and is_clear and len(shares) == 1 and all(map(self._is_settled, shares)):
             return [(room, 100) for room in shares]
         whole, first = sum(shares.values()), min(shares, key=lambda room: (-shares[room], room))
         sure = self._rate("in_robot" if node is None else "in_thing", measured(shares[first] / whole))
@@ -95,9 +96,13 @@ class Chances:
         found = {room: int((100 - sure) * share / left) for room, share in shares.items() if room != first}
         return sorted((room, share) for room, share in (*found.items(), (first, sure)) if share > 0)
 
-    def _is_whole(self, room: int) -> bool:
-        """Return whether no door has a room on both of its sides: what lies beyond one may be another room."""
-        return all(door.sides != (room, room) for door in self.rooms.doors)
+    def _is_settled(self, room: int) -> bool:
+        """Return whether no door can part a room: none has it on both sides, and all in it and about it is settled."""
+        inside = self.rooms.labels == room
+        about = with_edge_neighbours(inside)
+        at_edge = bool(inside[[0, -1]].any() or inside[:, [0, -1]].any())
+        settled = self._surely_free | self._surely_occupied
+        return not at_edge and bool(settled[about].all()) and all(d.sides != (room, room) for d in self.rooms.doors)
 
     def _robot_box(self) -> tuple[Box, bool]:
         """Return where the robot may be, and whether it is surely there."""
@@ -209,11 +214,13 @@ class Chances:
 
     @cached_property
     def _sure_verge(self) -> Bools:
-        """Squares that are verge beyond doubt: almost surely verge, and no piece that may be a thing."""
+        """Squares that are verge beyond doubt: almost surely verge, and no piece that may be of a thing."""
         sure = self.model.walls & self._surely_occupied
         if sure.any():
             for piece in self.model.unfelt_pieces:
                 sure &= ~piece
+            pieces = components(sure)  # what is settled to be longer than any thing is no part of one
+            sure = (extents(pieces.labels, pieces.number) > LONGEST_OBJECT)[pieces.labels] & sure
         felt = [square for square, colour in self.model.felt.items() if colour == VERGE_TOUCH_COLOUR]
         found: Bools = sure | (self.model.squares(felt) & self._surely_occupied)
         return found
