@@ -85,7 +85,7 @@ def is_corner(moment: Moment, arguments: tuple[str, ...]) -> bool:
     x, y = (round(value) for value in moment.on_grid(*map(int, arguments[1:3])))
     about = [(x + i, y + j) for i in (-1, 0) for j in (-1, 0)]
     inner = min(about, key=lambda square: float(np.dot(square, way)))
-    return all(moment.truth.is_occupied(square) == (square != inner) for square in about)
+    return all(moment.truth.seems(square, square != inner) for square in about)
 
 
 def true_rooms(moment: Moment) -> Sequence[BaseGeometry]:

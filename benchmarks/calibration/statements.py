@@ -68,7 +68,7 @@ def _kind(moment: Moment, arguments: tuple[str, ...]) -> float | None:
     node, kind = arguments[:2]
     if node in WHOLES:
         squares = moment.squares.get(node)
-        return sum(moment.truth.kind_of(square) == kind for square in squares) / len(squares) if squares else None
+        return sum(moment.truth.is_kind(square, kind) for square in squares) / len(squares) if squares else None
     found = moment.nodes.get(node)  # None for the robot, which is what its name says
     return None if found is None else found.kind == kind
 
@@ -125,8 +125,7 @@ def _region(moment: Moment, arguments: tuple[str, ...]) -> float | None:
     squares = moment.regions.get(arguments[0])
     if not squares:
         return None
-    occupied = sum(map(moment.truth.is_occupied, squares)) / len(squares)
-    return occupied if arguments[1] == "nonzero" else 1 - occupied
+    return sum(moment.truth.seems(square, arguments[1] == "nonzero") for square in squares) / len(squares)
 
 
 def _segment(moment: Moment, arguments: tuple[str, ...]) -> float | None:
@@ -139,7 +138,7 @@ def _segment(moment: Moment, arguments: tuple[str, ...]) -> float | None:
     across = np.array([-step[1], step[0]]) / (2 * length)
     along = ends[0] + (np.arange(SEGMENT_SAMPLES)[:, None] + 0.5) / SEGMENT_SAMPLES * step
     squares = [(x, y) for x, y in np.floor(np.concatenate([along + across, along - across])).astype(int).tolist()]
-    return sum(moment.truth.is_occupied(one) == (one in moment.solid) for one in squares) / len(squares)
+    return sum(moment.truth.seems(one, one in moment.solid) for one in squares) / len(squares)
 
 
 STATEMENTS: Mapping[tuple[str, int], Row] = {

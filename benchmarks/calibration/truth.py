@@ -39,7 +39,7 @@ class TableTruth:
     def __init__(self, dealt: DealtWorld, polygons: dict[str, Polygon], utak: XY, track: Sequence[XY] = ()) -> None:
         """Take the movable things as they lie now, and where the robot stands, both in the table frame.
 
-        track : where it stood so far. Squares that it crossed are floor, also those that verge covers in part.
+        track : where it stood so far. Squares that it crossed are floor and verge where verge covers them in part.
         """
         world = dealt.world
         self.utak, self.woke = utak, (world.utak.x, world.utak.y)
@@ -72,18 +72,24 @@ class TableTruth:
         rows, columns = np.nonzero(self._verge if name == VERGE else self._covers[name])
         return set(zip(columns.tolist(), rows.tolist(), strict=True))
 
-    def kind_of(self, square: Square) -> str:
-        """Return what covers a square, in part or wholly: verge before things, floor where neither does."""
-        if not self.is_occupied(square):
-            return FLOOR
-        return VERGE if self._is_verge(square) and square not in self._crossed else "object"
+    def is_kind(self, square: Square, kind: str) -> bool:
+        """Return whether a square is floor, verge or object, whatever covers it in part or wholly."""
+        if self._is_either(square):
+            return kind in (FLOOR, VERGE)
+        return kind == (VERGE if self._is_verge(square) else "object" if self._is_solid(square) else FLOOR)
 
-    def is_occupied(self, square: Square) -> bool:
-        """Return whether verge or a thing covers a square, in part or wholly."""
+    def seems(self, square: Square, occupied: bool) -> bool:
+        """Return whether a square is occupied, or free, as it seems: what is crossed and covered in part is both."""
+        return self._is_either(square) or self._is_solid(square) == occupied
+
+    def _is_solid(self, square: Square) -> bool:
         x, y = square
-        if square in self._crossed and not any(bool(cover[y, x]) for cover in self._covers.values()):
-            return False
         return not (0 <= x < self.width and 0 <= y < self.height) or bool(self._solid[y, x])
+
+    def _is_either(self, square: Square) -> bool:
+        """Return whether verge covers a square in part that the robot crossed."""
+        x, y = square
+        return square in self._crossed and self._is_verge(square) and not any(c[y, x] for c in self._covers.values())
 
     @property
     def robot_squares(self) -> set[Square]:
