@@ -171,6 +171,16 @@ def test_what_speaks_of_many_squares_is_true_to_a_share() -> None:
     assert verdicts(found._replace(solid=frozenset()))["segment(verge,0,-1050,-650,-1050,-150,100)"] == 0.5
 
 
+def test_a_square_that_was_crossed_and_is_covered_in_part_is_both() -> None:
+    floor = box(2.5, 2, 18, 14)
+    plan = SimpleNamespace(width=20, height=16, floor=floor, verge=box(0, 0, 20, 16).difference(floor))
+    world = SimpleNamespace(plan=plan, things=(THING,), heading=0, utak=Point(2.8, 10.5))
+    truth = TableTruth(DealtWorld(Asked("plugged", 0), world, ()), {}, (4.5, 10.5), [(2.8, 10.5), (4.5, 10.5)])
+    assert truth.seems((2, 10), True) and truth.seems((2, 10), False)
+    assert truth.is_kind((2, 10), "floor") and truth.is_kind((2, 10), "verge")
+    assert truth.seems((2, 8), True) and not truth.seems((2, 8), False)
+
+
 def statement(confidence: int, true: bool, alternatives: str = "") -> Held:
     return Held(
         "plugged:0", 3, HeldStatement("kind/3", f"kind(o1,object,{confidence})", confidence, true, alternatives)
