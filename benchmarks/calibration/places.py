@@ -74,7 +74,11 @@ def is_in(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
     parts = true_rooms(moment)
     away = [part.distance(middle) for part in parts]
     true = room_in_truth(moment, room, parts)
-    return true is not None and away[true] <= min(away) + 2 * LINE_CUT
+    if true is None or away[true] > min(away) + 2 * LINE_CUT:
+        return False
+    stated = [(-int(share), other) for name, other, share in moment.rows("in", 3) if name == node]
+    same = [one for one in stated if room_in_truth(moment, one[1], parts) == true]
+    return None if min(same) != (-int(arguments[2]), room) else True  # several that are one true room: the likeliest
 
 
 def is_corner(moment: Moment, arguments: tuple[str, ...]) -> bool:
