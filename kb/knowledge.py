@@ -159,7 +159,7 @@ class Knowledge:
     def _regions(self, view: MapView) -> MapRegions:
         """Return the regions of the map and what each of them is, as seen and as felt."""
         occupied = view.seen & (view.probability > MAX_FREE_PROBABILITY)
-        settled = view.state != OPEN
+        settled = (view.state != OPEN) & view.sure
         percept, labels = map_regions(occupied, view.seen, settled, view.probability)
         felt = self._touches.colours
         parted = PartedMap(percept, labels)

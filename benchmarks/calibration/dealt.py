@@ -1,6 +1,6 @@
 """Worlds of all kinds, dealt in an order that a seed fixes, so that few worlds already are of many kinds."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,14 +22,17 @@ class DealtWorld(NamedTuple):
     doors: tuple[tuple[Polygon, float], ...] | None  # shape and width in squares, table frame; None: not said
 
 
-def dealt(count: int, seed: int) -> Iterator[Asked]:
-    """Yield `count` worlds; each kind with each of its tasks comes once before any comes again, with the next seed."""
+def dealt(count: int, seed: int, noises: Sequence[float]) -> Iterator[tuple[Asked, float]]:
+    """Yield `count` worlds, each with a noise.
+
+    Each kind with each of its tasks comes once before any comes again, then with the next seed and the next noise.
+    """
     kinds = worlds_of(all_kinds(), 0, 1)
     order = np.random.default_rng(seed).permutation(len(kinds))
     for number in range(count):
         again, place = divmod(number, len(kinds))
         kind = kinds[order[place]]
-        yield Asked(kind.kind, seed + again, kind.task)
+        yield Asked(kind.kind, seed + again, kind.task), noises[(place + again) % len(noises)]
 
 
 def made(asked: Asked) -> DealtWorld:

@@ -3,15 +3,18 @@
 import json
 import signal
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.calibration.dealt import DealtWorld, made
-from benchmarks.calibration.statements import Moment, moment_of
+from benchmarks.calibration.moments import Moment, moment_of
 from benchmarks.calibration.truth import TableTruth, frame_of
 from benchmarks.claims.asked import Asked
 from benchmarks.worlds.scenes import RULES_FILE, write
+from utak.geometry.kernels.arrays import XY
+from utak.kb.task.task import Task
+from utak.kb.world.facts import Places
 from utak.simulator.episode.episode import EpisodeLog
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import Session
@@ -24,6 +27,7 @@ class LookedAt(NamedTuple):
 
     moment: Moment
     model: Any  # kb.world.model.WorldModel
+    places: Places  # the rooms and corners that are believed
     frame: Any  # benchmarks.harness.beliefs.TableFrame
     step: int
     decisions: tuple[tuple[str, tuple[str, ...]], ...]  # what each encoding was given at this step: its name, and facts
@@ -42,7 +46,7 @@ class Ended(NamedTuple):
     @property
     def name(self) -> str:
         """The name of the world, with the noise where there is some."""
-        return f"{self.asked.name} at noise {self.noise:g}" if self.noise else self.asked.name
+        return world_name(self.asked, self.noise)
 
     def line(self) -> str:
         """Return the end as JSON, without the looks."""
@@ -52,6 +56,11 @@ class Ended(NamedTuple):
 
 class TimeOverError(Exception):
     """A run took more than its seconds."""
+
+
+def world_name(asked: Asked, noise: float) -> str:
+    """Return the name of a world, with the noise where there is some."""
+    return f"{asked.name} at noise {noise:g}" if noise else asked.name
 
 
 def numbers(text: str) -> list[float]:
@@ -67,7 +76,7 @@ def watched(
     seconds : after which a run is ended, and its last step so far counts; 0 for no limit.
     """
     dealt = made(asked)
-    noted: list[Any] = []
+    taken: list[_Taken] = []
     verdict, achieved = "time", False
     with tempfile.TemporaryDirectory(prefix="utak-calibration-") as folder:
         scenario = read_scenario(write(dealt.world, Path(folder)))
@@ -79,7 +88,7 @@ def watched(
         written: dict[tuple[int, int], list[Any]] = {}
 
         def look(at: Session) -> None:
-            noted.append(note(_look(dealt, at, _decisions(at.line, written))))
+            taken.append(_taken(at, taken[-1].track if taken else (), _decisions(at.line, written)))
 
         before = signal.signal(signal.SIGALRM, _ring)
         signal.alarm(seconds)
@@ -93,9 +102,10 @@ def watched(
         finally:
             signal.alarm(0)
             signal.signal(signal.SIGALRM, before)
-    last = len(noted) - 1
-    chosen = dict.fromkeys(round(last * part / parts) for part in range(parts + 1)) if noted else {}
-    return Ended(asked, noise, verdict, achieved, max(0, last), tuple(noted[number] for number in chosen))
+    last = len(taken) - 1
+    chosen = dict.fromkeys(round(last * part / parts) for part in range(parts + 1)) if taken else {}
+    looks = tuple(note(_look(dealt, taken[number])) for number in chosen)
+    return Ended(asked, noise, verdict, achieved, max(0, last), looks)
 
 
 def _ring(number: int, frame: object) -> None:
@@ -114,11 +124,34 @@ def _decisions(
     return tuple(found)
 
 
-def _look(dealt: DealtWorld, session: Session, decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> LookedAt:
+class _Taken(NamedTuple):
+    """A moment as it is kept while the run goes on: afterwards it is compared with the truth, where it is chosen."""
+
+    task: Task
+    model: Any  # kb.world.model.WorldModel
+    places: Places
+    step: int
+    facts: tuple[str, ...]
+    decisions: tuple[tuple[str, tuple[str, ...]], ...]
+    polygons: dict[str, Any]  # of the movable things, table frame
+    track: tuple[XY, ...]  # where the robot stood so far, table frame
+
+
+def _taken(session: Session, track: Sequence[XY], decisions: tuple[tuple[str, tuple[str, ...]], ...]) -> _Taken:
     """Return the present moment of a run."""
-    world, robot = dealt.world, session.robot
-    model = robot.model  # type: ignore[attr-defined]
-    truth = TableTruth(dealt, dict(session.table.polygons), session.table.utak)
-    frame = frame_of(model, truth, (world.utak.x, world.utak.y))
+    robot: Any = session.robot
+    places = Places(robot.decider.rooms, robot.decider.corners)
     facts = tuple(fact.rstrip(".") for fact in session.line["belief"]["facts"])
-    return LookedAt(moment_of(robot, facts, truth, frame), model, frame, session.line["step"], decisions)
+    now = (*track, session.table.utak)
+    polygons, task = dict(session.table.polygons), robot.decider.task
+    return _Taken(task, robot.model, places, session.line["step"], facts, decisions, polygons, now)
+
+
+def _look(dealt: DealtWorld, taken: _Taken) -> LookedAt:
+    """Return a moment of a run with the truth beside it."""
+    task, model, places, step, facts, decisions, polygons, track = taken
+    world = dealt.world
+    truth = TableTruth(dealt, polygons, track[-1], track)
+    frame = frame_of(model, truth, (world.utak.x, world.utak.y))
+    moment = moment_of(task, model, facts, truth, frame, places.rooms)
+    return LookedAt(moment, model, places, frame, step, decisions)

@@ -3,50 +3,23 @@
 A new predicate, or a new form with a confidence, is one more row of STATEMENTS.
 """
 
-import math
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
-import shapely
-from shapely import LineString, Point
 
 from benchmarks.calibration.figures import RECTANGLE
-from benchmarks.calibration.truth import FLOOR, VERGE, NodeTruth, TableTruth
-from benchmarks.calibration.whereabouts import TrueAlternatives
-from benchmarks.worlds.furniture import OUTLINE_SHAPES
-from benchmarks.worlds.odd.houses import COMPASS
-from utak.geometry.kernels.arrays import XY, Square
+from benchmarks.calibration.moments import Moment
+from benchmarks.calibration.places import does_connect, is_corner, is_door, is_in, is_width
+from benchmarks.calibration.truth import FLOOR, VERGE
+from utak.geometry.kernels.arrays import Square
 from utak.kb.language.atoms import atom_parts
+from utak.kb.world.facts import SEGMENT_SAMPLES
 
 CERTAIN = 100  # percent: of a form without confidence, which says that it is known
-HUNDREDTHS = 100  # of a square: the unit of lengths in facts
-DOOR_DISTANCE = 1.0  # squares from the narrowest line of a believed door to the true one
-WIDTH_TOLERANCE = 1.0  # squares: a width stated as one number is right within so much, as an end lies in some square
-FURTHEST_CORNER_DISTANCE = 1.0  # squares in each axis of the table, as DESIGN says when the robot is at a corner
 CORNERLESS = ("disc",)
-
-
-class Moment(NamedTuple):
-    """One moment of a run: what is believed, and what is true."""
-
-    facts: tuple[str, ...]  # without full stops
-    nodes: Mapping[str, NodeTruth]  # what each believed object is
-    squares: Mapping[str, frozenset[Square]]  # of each node, table frame
-    truth: TableTruth
-    alternatives: TrueAlternatives
-
-    def place(self, east: int, north: int) -> XY:
-        """Return a point, hundredths of squares in the robot frame, as a point of the table, in squares.
-
-        The robot is where it is in truth: an error of its place alone makes no statement false.
-        """
-        here = next(
-            arguments for name, arguments in map(atom_parts, self.facts) if name == "offset" and arguments[0] == "org"
-        )
-        x, y = ((value - int(own)) / HUNDREDTHS for value, own in zip((east, north), here[1:], strict=True))
-        c, s = math.cos(math.radians(self.truth.heading)), math.sin(math.radians(self.truth.heading))
-        return x * c - y * s + self.truth.utak[0], x * s + y * c + self.truth.utak[1]
+CLASS_GROUPS = ("rectangle", "polygon")  # of classes: they exclude none of their own
+WHOLES = (FLOOR, VERGE)  # nodes that are shares of many squares
 
 
 class HeldStatement(NamedTuple):
@@ -55,12 +28,12 @@ class HeldStatement(NamedTuple):
     predicate: str  # name/arity
     fact: str
     confidence: int
-    true: bool
+    true: float  # 1 or 0; the share of squares that are so for what speaks of many
     alternatives: str = ""  # statements with the same text exclude each other; "" for those that exclude none
 
 
-# Whether a fact with these arguments is true; None where the truth does not say.
-IsTrue = Callable[[Moment, tuple[str, ...]], bool | None]
+# Whether a fact with these arguments is true, or to what share; None where the truth does not say.
+IsTrue = Callable[[Moment, tuple[str, ...]], float | None]
 
 
 class Row(NamedTuple):
@@ -69,24 +42,35 @@ class Row(NamedTuple):
     is_true: IsTrue
     confidence: int | None = None  # which argument it is; None: the form says that it is known
     exclusive: bool = False  # whether statements about one thing exclude each other
+    known_alone: bool = False  # whether only those at 100 are compared: less is a share of evidence, not a chance
 
 
-def statements(moment: Moment) -> Iterator[HeldStatement]:
-    """Yield the statements of a moment that the truth decides."""
+def statements(moment: Moment, names: Collection[str] = ()) -> Iterator[HeldStatement]:
+    """Yield the statements of a moment that the truth decides. names : of predicates, if not of all."""
     for fact in moment.facts:
         name, arguments = atom_parts(fact)
+        if names and name not in names:
+            continue
         row = STATEMENTS.get((name, len(arguments)))
-        true = None if row is None else row.is_true(moment, arguments)
-        if row is None or true is None:
+        if row is None:
             continue
         sure = CERTAIN if row.confidence is None else int(arguments[row.confidence])
-        excludes = f"{name}({arguments[0]})" if row.exclusive and arguments[1] not in ("rectangle", "polygon") else ""
-        yield HeldStatement(f"{name}/{len(arguments)}", fact, sure, true, excludes)
+        true = row.is_true(moment, arguments) if sure == CERTAIN or not row.known_alone else None
+        if true is None:
+            continue
+        exclusive = row.exclusive and arguments[0] not in WHOLES and arguments[1] not in CLASS_GROUPS
+        excludes = f"{name}({arguments[0]})" if exclusive else ""
+        yield HeldStatement(f"{name}/{len(arguments)}", fact, sure, float(true), excludes)
 
 
-def _kind(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    found = moment.nodes.get(arguments[0])  # None for the robot, the floor and the verge: each is what its name says
-    return None if found is None else found.kind == arguments[1]
+def _kind(moment: Moment, arguments: tuple[str, ...]) -> float | None:
+    """Return whether a node is of a kind; for the floor and the verge the share of their squares that are."""
+    node, kind = arguments[:2]
+    if node in WHOLES:
+        squares = moment.squares.get(node)
+        return sum(moment.truth.is_kind(square, kind) for square in squares) / len(squares) if squares else None
+    found = moment.nodes.get(node)  # None for the robot, which is what its name says
+    return None if found is None else found.kind == kind
 
 
 def _shape(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
@@ -136,59 +120,34 @@ def _true_squares(moment: Moment, node: str) -> set[Square] | None:
     return moment.truth.about(VERGE) if found.kind == VERGE else set()
 
 
-def _true_door(moment: Moment, door: str) -> float | None:
-    """Return the width of the true door where a believed one is, in squares; 0 for none, None where nobody says."""
-    if moment.truth.doors is None:
+def _region(moment: Moment, arguments: tuple[str, ...]) -> float | None:
+    """Return the share of a region's squares that are as it says."""
+    squares = moment.regions.get(arguments[0])
+    if not squares:
         return None
-    for name, arguments in map(atom_parts, moment.facts):
-        if name == "threshold" and arguments[0] == door:
-            a, b = (moment.place(*map(int, arguments[i : i + 2])) for i in (1, 3))
-            middle = LineString([a, b]).interpolate(0.5, normalized=True)
-            near = [width for shape, width in moment.truth.doors if shape.distance(middle) <= DOOR_DISTANCE]
-            return near[0] if near else 0.0
-    return None
+    return sum(moment.truth.seems(square, arguments[1] == "nonzero") for square in squares) / len(squares)
 
 
-def _door(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    width = _true_door(moment, arguments[0])
-    return None if width is None else width > 0
-
-
-def _width(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    width = _true_door(moment, arguments[0])
-    if not width:  # what is no door has no width
+def _segment(moment: Moment, arguments: tuple[str, ...]) -> float | None:
+    """Return the share of the squares on both sides of a line that are as they seem, free or occupied."""
+    ends = np.array([moment.on_grid(*map(int, arguments[i : i + 2])) for i in (2, 4)])
+    step = ends[1] - ends[0]
+    length = float(np.hypot(*step))
+    if length < 1e-9:
         return None
-    least, *most = (int(value) / HUNDREDTHS for value in arguments[1:3])
-    return least - 1e-2 <= width <= most[0] + 1e-2 if most else abs(width - least) <= WIDTH_TOLERANCE
-
-
-def _width_as_one(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    return _width(moment, arguments[:2])
-
-
-def _corner(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    """Whether it is the furthest corner of the whole floor; corner/3 speaks of the known floor, and is left out."""
-    side = COMPASS[arguments[0]]
-    x, y = moment.place(*map(int, arguments[1:3]))
-    c, s = math.cos(math.radians(moment.truth.heading)), math.sin(math.radians(moment.truth.heading))
-    way = np.array([side[0] * c - side[1] * s, side[0] * s + side[1] * c])
-    floor = next(
-        (part for part in shapely.get_parts(moment.truth.floor) if part.distance(Point(moment.truth.utak)) < 1e-6), None
-    )
-    if floor is None:
-        return None
-    corners = shapely.get_coordinates(floor.exterior)
-    best = corners[(corners @ way) >= (corners @ way).max() - 1e-6]
-    return bool((np.abs(best - (x, y)).max(axis=1) <= FURTHEST_CORNER_DISTANCE).any())
+    across = np.array([-step[1], step[0]]) / (2 * length)
+    along = ends[0] + (np.arange(SEGMENT_SAMPLES)[:, None] + 0.5) / SEGMENT_SAMPLES * step
+    squares = [(x, y) for x, y in np.floor(np.concatenate([along + across, along - across])).astype(int).tolist()]
+    return sum(moment.truth.seems(one, one in moment.solid) for one in squares) / len(squares)
 
 
 def _may_be(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    place = moment.alternatives.place(arguments[0])
+    place = moment.alternatives and moment.alternatives.place(arguments[0])
     return None if place is None else place == arguments[1]
 
 
 def _joined(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
-    return moment.alternatives.is_one_thing(*arguments[:2])
+    return moment.alternatives and moment.alternatives.is_one_thing(*arguments[:2])
 
 
 STATEMENTS: Mapping[tuple[str, int], Row] = {
@@ -196,23 +155,14 @@ STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("shape", 3): Row(_shape, 2, True),
     ("colour", 3): Row(_colour, 2),
     ("movable", 2): Row(_movable, 1),
-    ("adjacent", 2): Row(_adjacent),
     ("adjacent", 3): Row(_adjacent, 2),
-    ("door", 1): Row(_door),
-    ("door", 2): Row(_door, 1),
-    ("width", 2): Row(_width_as_one),
-    ("width", 4): Row(_width, 3),
-    ("corner", 4): Row(_corner, 3),
     ("may_be", 3): Row(_may_be, 2, True),
     ("joined", 3): Row(_joined, 2),
+    ("region", 3): Row(_region, 2),
+    ("door", 2): Row(is_door, 1),
+    ("connects", 4): Row(does_connect, 3),
+    ("width", 3): Row(is_width),
+    ("in", 3): Row(is_in, 2, True),
+    ("corner", 4): Row(is_corner, 3),
+    ("segment", 7): Row(_segment, 6, known_alone=True),
 }
-CLASS_NAMES = OUTLINE_SHAPES
-
-
-def moment_of(robot: Any, facts: tuple[str, ...], truth: TableTruth, frame: Any) -> Moment:
-    """Return a moment. frame : where the table lies in the map of the model, as `benchmarks.harness.beliefs` says."""
-    model, decider = robot.model, robot.decider
-    squares = {node.name: frozenset(frame.square(*square) for square in node.patch.squares()) for node in model.objects}
-    nodes = {name: truth.of(there) for name, there in squares.items()}
-    alternatives = TrueAlternatives(decider.task, model, decider.rooms, frame, truth, nodes)
-    return Moment(facts, nodes, squares, truth, alternatives)

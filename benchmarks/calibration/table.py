@@ -1,9 +1,12 @@
 """Reliability: how often statements were true, by the confidence with which they were held."""
 
+import json
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
+from benchmarks.calibration.runs import Ended
 from benchmarks.calibration.statements import CERTAIN, HeldStatement
 
 BINS = 10  # of 10 percent each; 100 percent is in the last one. A convention
@@ -63,7 +66,7 @@ def _reliability(predicate: str, held: Sequence[Held]) -> Reliability:
         for number, there in sorted(bins.items())
     }
     error = sum(row.number * abs(row.confidence - row.true) for row in rows.values()) / len(held)
-    wrong = tuple(one for one in held if one.statement.confidence == CERTAIN and not one.statement.true)
+    wrong = tuple(one for one in held if one.statement.confidence == CERTAIN and one.statement.true < 1)
     count: dict[int, int] = defaultdict(int)
     for total in sums.values():
         count[total] += 1
@@ -110,3 +113,18 @@ def as_json(found: Sequence[Reliability]) -> list[dict[str, Any]]:
         }
         for one in found
     ]
+
+
+def run_line(ended: Ended, held: Sequence[Held]) -> str:
+    """Return a run as a line of JSON: its name, how it ended, and its statements."""
+    told = json.loads(ended.line()) | {"name": ended.name}
+    return json.dumps(told | {"statements": [[step, *statement] for _, step, statement in held]})
+
+
+def read_runs(path: Path) -> dict[str, list[Held]]:
+    """Return the statements of the runs in a file by the names of their worlds."""
+    found = map(json.loads, path.read_text().splitlines())
+    return {
+        run["name"]: [Held(run["name"], step, HeldStatement(*statement)) for step, *statement in run["statements"]]
+        for run in found
+    }

@@ -2,7 +2,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,13 +11,18 @@ from shapely import Polygon
 
 from benchmarks.calibration.dealt import DealtWorld
 from benchmarks.calibration.figures import NO_CLASS, class_of
+from benchmarks.calibration.necks import door_necks
 from benchmarks.harness.beliefs import TableFrame, table_frame
 from benchmarks.worlds.placing import digital
-from utak.geometry.kernels.arrays import Bools, Square
+from utak.geometry.kernels.arrays import XY, Bools, Square
 
 VERGE, FLOOR = "verge", "floor"
 # Other things cover at least so great a part of the squares that the first one covers: then a node is several things.
 SEVERAL_SHARE = 0.25
+TRACK_STEP = 0.05  # squares from sample to sample of a track
+
+
+TrueDoor = tuple[Polygon, float]  # its shape, table frame, and its width, both in squares
 
 
 class NodeTruth(NamedTuple):
@@ -30,17 +36,23 @@ class NodeTruth(NamedTuple):
 class TableTruth:
     """The truth of one moment."""
 
-    def __init__(self, dealt: DealtWorld, polygons: dict[str, Polygon], utak: tuple[float, float]) -> None:
-        """Take the movable things as they lie now, and where the robot stands, both in the table frame."""
+    def __init__(self, dealt: DealtWorld, polygons: dict[str, Polygon], utak: XY, track: Sequence[XY] = ()) -> None:
+        """Take the movable things as they lie now, and where the robot stands, both in the table frame.
+
+        track : where it stood so far. Squares that it crossed are floor and verge where verge covers them in part.
+        """
         world = dealt.world
-        self.doors, self.utak = dealt.doors, utak
+        self.utak, self.woke = utak, (world.utak.x, world.utak.y)
         self.width, self.height = world.plan.width, world.plan.height
         self.heading = float(world.heading)
         self.floor = world.plan.floor
+        self.doors = dealt.doors if dealt.doors is not None else door_necks(self.floor, self.width, self.height)
         self.things = {thing.name: thing for thing in world.things}
         self.polygons = {name: polygons.get(name, thing.polygon) for name, thing in self.things.items()}
         self._verge = _digital(world.plan.verge, self.width, self.height)
         self._covers = {name: _digital(shape, self.width, self.height) for name, shape in self.polygons.items()}
+        self._crossed = set(_crossed(track))
+        self._solid: Bools = np.logical_or.reduce([self._verge, *self._covers.values()])
 
     def of(self, squares: Iterable[Square]) -> NodeTruth:
         """Return what a node with some squares of the table is."""
@@ -60,6 +72,25 @@ class TableTruth:
         rows, columns = np.nonzero(self._verge if name == VERGE else self._covers[name])
         return set(zip(columns.tolist(), rows.tolist(), strict=True))
 
+    def is_kind(self, square: Square, kind: str) -> bool:
+        """Return whether a square is floor, verge or object, whatever covers it in part or wholly."""
+        if self._is_either(square):
+            return kind in (FLOOR, VERGE)
+        return kind == (VERGE if self._is_verge(square) else "object" if self._is_solid(square) else FLOOR)
+
+    def seems(self, square: Square, occupied: bool) -> bool:
+        """Return whether a square is occupied, or free, as it seems: what is crossed and covered in part is both."""
+        return self._is_either(square) or self._is_solid(square) == occupied
+
+    def _is_solid(self, square: Square) -> bool:
+        x, y = square
+        return not (0 <= x < self.width and 0 <= y < self.height) or bool(self._solid[y, x])
+
+    def _is_either(self, square: Square) -> bool:
+        """Return whether verge covers a square in part that the robot crossed."""
+        x, y = square
+        return square in self._crossed and self._is_verge(square) and not any(c[y, x] for c in self._covers.values())
+
     @property
     def robot_squares(self) -> set[Square]:
         """The squares on which the robot may be said to stand: two or four on a line of the grid."""
@@ -72,6 +103,13 @@ class TableTruth:
     def _is_verge(self, square: Square) -> bool:
         x, y = square
         return not (0 <= x < self.width and 0 <= y < self.height) or bool(self._verge[y, x])
+
+
+def _crossed(track: Sequence[XY]) -> Iterator[Square]:
+    """Yield the squares that a track crosses, sampled finely."""
+    for (x, y), (u, v) in pairwise(track):
+        parts = np.linspace(0, 1, max(2, math.ceil(math.dist((x, y), (u, v)) / TRACK_STEP)))
+        yield from {(math.floor(x + part * (u - x)), math.floor(y + part * (v - y))) for part in parts.tolist()}
 
 
 _DIGITAL: dict[bytes, Bools] = {}

@@ -5,6 +5,6 @@ Modules, in reading order:
 measures  what confidences are conditioned on, with what is true
 bins      into which bins measures fall
 count     how often each alternative was true
-written   the file kb/asp/priors.lp
+written   the files kb/asp/priors.lp and kb/asp/place_priors.lp
 __main__  the program
 """

@@ -1,6 +1,8 @@
-"""Count priors in random worlds and write kb/asp/priors.lp, or with --whereabouts kb/asp/priors_of_whereabouts.lp.
+"""Count priors in random worlds and write kb/asp/priors.lp and kb/asp/place_priors.lp.
 
-    python -m benchmarks.priors --worlds 250 --seed 5000 [--whereabouts] [--noise 0,0.05] [--samples FILE] [-o FILE]
+    python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [-o kb/asp/priors.lp]
+                                [--places kb/asp/place_priors.lp]
+    python -m benchmarks.priors --whereabouts ... [-o kb/asp/priors_of_whereabouts.lp]
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
 alike: the first step, the last one, and those in between that part the run evenly. Progress goes to stderr. --samples
@@ -19,13 +21,21 @@ from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.runs import LookedAt, numbers, watched
 from benchmarks.calibration.statements import statements
 from benchmarks.harness.judging import CHECKOUT
-from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_pieces, counted_whereabouts
-from benchmarks.priors.measures import FitSeen, RegionSeen, fits_seen, regions_seen
+from benchmarks.priors.count import (
+    Counted,
+    counted_classes,
+    counted_kinds,
+    counted_pieces,
+    counted_places,
+    counted_whereabouts,
+)
+from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, fits_seen, places_seen, regions_seen
 from benchmarks.priors.whereabouts import PieceSeen, WhereaboutSeen, pieces_seen, whereabouts_seen
-from benchmarks.priors.written import text
+from benchmarks.priors.written import places_text, text
 from utak.simulator.run.warming import warm_all
 
 PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
+PLACES_FILE = PRIORS_FILE.with_name("place_priors.lp")
 WHEREABOUTS_FILE = PRIORS_FILE.with_name("priors_of_whereabouts.lp")
 WHOLE_OF_KINDS = "interpretation.lp and shapes.lp"
 
@@ -35,6 +45,7 @@ class CountedMoment(NamedTuple):
 
     regions: tuple[RegionSeen, ...]
     fits: tuple[FitSeen, ...]
+    places: tuple[PlaceSeen, ...]
     untried: tuple[bool, ...]  # of the objects never moved, which are objects in truth: whether each can be moved
 
 
@@ -54,13 +65,11 @@ def noted(look: LookedAt) -> CountedMoment:
     """Return what is counted of a moment."""
     nodes, tried = look.moment.nodes, {node.name for node in look.model.objects if node.moved or node.stuck}
     untried = (
-        statement.true
-        for statement in statements(look.moment)
-        if statement.predicate == "movable/2"
-        and (node := statement.fact.partition("(")[2].partition(",")[0]) not in tried
-        and nodes[node].kind == "object"
+        statement.true == 1
+        for statement in statements(look.moment, ("movable",))
+        if (node := statement.fact.partition("(")[2].partition(",")[0]) not in tried and nodes[node].kind == "object"
     )
-    return CountedMoment(tuple(regions_seen(look)), tuple(fits_seen(look)), tuple(untried))
+    return CountedMoment(*(tuple(seen(look)) for seen in (regions_seen, fits_seen, places_seen)), tuple(untried))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -72,8 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         moments = [read(line) for line in samples.read_text().splitlines()]
     else:
         warm_all()
-    for number, asked in enumerate(() if given.recount else dealt(given.worlds, given.seed), 1):
-        noise = given.noise[(number - 1) % len(given.noise)]
+    worlds = () if given.recount else dealt(given.worlds, given.seed, given.noise)
+    for number, (asked, noise) in enumerate(worlds, 1):
         ended = watched(asked, noise, given.max_steps, given.seconds, note, given.parts)
         moments += ended.looks
         if samples:
@@ -81,14 +90,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
     command = (
-        f"python -m benchmarks.priors{' --whereabouts' * given.whereabouts} --worlds {given.worlds} --seed {given.seed} "
-        f"--max-steps {given.max_steps} --parts {given.parts} "
+        f"python -m benchmarks.priors{' --whereabouts' * given.whereabouts} --worlds {given.worlds} "
+        f"--seed {given.seed} --max-steps {given.max_steps} --parts {given.parts} "
         f"--noise {','.join(f'{noise:g}' for noise in given.noise)}"
     )
     if given.whereabouts:
-        command += f" --seconds {given.seconds}"
-    output = given.output or (WHEREABOUTS_FILE if given.whereabouts else PRIORS_FILE)
-    output.write_text((whereabouts_written if given.whereabouts else written)(moments, command, given.worlds))
+        written_to = given.output or WHEREABOUTS_FILE
+        written_to.write_text(whereabouts_written(moments, f"{command} --seconds {given.seconds}", given.worlds))
+        return 0
+    (given.output or PRIORS_FILE).write_text(written(moments, command, given.worlds))
+    given.places.write_text(places_written(moments, [command], given.worlds))
     return 0
 
 
@@ -120,12 +131,20 @@ def _read_whereabouts(line: str) -> WhereaboutsMoment:
     return WhereaboutsMoment(tuple(WhereaboutSeen(*one) for one in places), tuple(PieceSeen(*one) for one in pieces))
 
 
+def places_written(moments: Sequence[CountedMoment], commands: Sequence[str], worlds: int) -> str:
+    """Return the file of what some moments give of places."""
+    places = [place for moment in moments for place in moment.places]
+    counts = f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} facts about places"
+    return places_text(list(counted_places(places)), [*commands, counts])
+
+
 def _read(line: str) -> CountedMoment:
     """Return a moment from its line of JSON."""
-    regions, fits, untried = json.loads(line)
+    regions, fits, places, untried = json.loads(line)
     return CountedMoment(
         tuple(RegionSeen(*region) for region in regions),
         tuple(FitSeen(node, tuple(map(tuple, found)), *rest) for node, found, *rest in fits),
+        tuple(PlaceSeen(*place) for place in places),
         tuple(untried),
     )
 
@@ -134,14 +153,15 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.priors", description="Count priors in random worlds.")
     parser.add_argument("--worlds", type=int, default=250, help="how many (%(default)s)")
     parser.add_argument("--seed", type=int, default=5000, help="of the worlds (%(default)s)")
-    parser.add_argument("--noise", type=numbers, default=[0.0, 0.0, 0.0, 0.0, 0.05], help="with commas, in turn")
+    parser.add_argument("--noise", type=numbers, default=[0.0, 0.05], help="with commas, in turn")
     parser.add_argument("--max-steps", type=int, default=60, help="most commands (%(default)s)")
     parser.add_argument("--seconds", type=int, default=600, help="most seconds a world, 0 for no limit (%(default)s)")
     parser.add_argument("--parts", type=int, default=6, help="into how many parts moments part a run (%(default)s)")
     parser.add_argument("--samples", type=Path, help="what was measured, a JSON line a moment; added to")
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
     parser.add_argument("-o", "--output", type=Path, help="the file (default that of kb/asp)")
-    parser.add_argument("--whereabouts", action="store_true", help="count places of things and pieces instead of kinds")
+    parser.add_argument("--places", type=Path, default=PLACES_FILE, help="that of places (%(default)s)")
+    parser.add_argument("--whereabouts", action="store_true", help="count where things may be, and pieces, instead")
     return parser
 
 

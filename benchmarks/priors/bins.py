@@ -62,3 +62,19 @@ WHEREABOUT_MEASURE = {
 JOINED = {"unfelt": bins(0, 75), "same": WHOLE}
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one
+# Of facts about places, by case (kb/world/chances.py): bins of what was measured, percent.
+TOUCHING, ROOM = bins(0, 5, 20, 40, 60, 90), bins(0, 50, 60, 80, 95)
+PLACES = {
+    "adjacent_robot": bins(0, 20, 60),
+    "adjacent_robot_unsure": bins(0, 20, 60),
+    "adjacent_verge": TOUCHING,
+    "adjacent_verge_unsure": TOUCHING,
+    "adjacent_things": bins(0, 20, 60),
+    "adjacent_things_unsure": bins(0, 20, 60),
+    "in_robot": ROOM,
+    "in_thing": ROOM,
+    "door_seen": bins(0, 50, 51, 99),
+    "door_unseen": bins(0, 50, 51, 99),
+    "corner": bins(0, 10, 20, 50, 90),
+    "corner_unsure": bins(0, 10, 20, 50, 90),
+}

@@ -17,12 +17,13 @@ from benchmarks.priors.bins import (
     NONE_MISFIT,
     OBJECT_MASS,
     OPENNESS,
+    PLACES,
     WHEREABOUT_MEASURE,
     WHOLE,
     Bin,
     bin_of,
 )
-from benchmarks.priors.measures import FitSeen, RegionSeen
+from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
 from benchmarks.priors.whereabouts import PieceSeen, WhereaboutSeen
 
 THOUSAND = 1000
@@ -120,3 +121,12 @@ def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:
         for share in shares:
             there = [piece for piece in seen if piece.felt == felt and share.holds(piece.share)]
             yield Counted("counted_joined", (felt, share), sum(piece.one for piece in there), len(there))
+
+
+def counted_places(places: Iterable[PlaceSeen]) -> Iterator[Counted]:
+    """Yield how often facts about places were true, by their case and by what was measured."""
+    seen = list(places)
+    for case, measures in PLACES.items():
+        for measure in measures:
+            there = [place for place in seen if place.case == case and measure.holds(place.measure)]
+            yield Counted("counted_chance", (case, measure), sum(place.true for place in there), len(there))

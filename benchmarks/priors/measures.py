@@ -6,8 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.calibration.runs import LookedAt
+from benchmarks.calibration.statements import statements
 from utak.kb.language.atoms import atom_parts
 from utak.kb.perception.interpretation import LONGEST_OBJECT
+from utak.kb.world.chances import Chances
+from utak.kb.world.facts import place_facts
+
+FIRST_NOTE = 1_000  # above all confidences
+PLACES_TOLD = ("offset(org,", "threshold(")
 
 
 class RegionSeen(NamedTuple):
@@ -29,6 +35,14 @@ class FitSeen(NamedTuple):
     full: int  # squares that it surely covers
     kind: str  # in truth
     shape: str | None  # in truth
+
+
+class PlaceSeen(NamedTuple):
+    """A fact about a place that is not certain, as kb/world/chances.py measures it."""
+
+    case: str
+    measure: int  # percent
+    true: bool
 
 
 def regions_seen(look: LookedAt) -> Iterator[RegionSeen]:
@@ -101,6 +115,22 @@ def fits_seen(look: LookedAt) -> Iterator[FitSeen]:
             order = tuple((shape, misfit) for _, shape, misfit in sorted(found))
             open_, full = (numbers[name].get(node, 0) for name in ("open_squares", "full_squares"))
             yield FitSeen(node, order, open_, full, true.kind, true.shape)
+
+
+def places_seen(look: LookedAt) -> Iterator[PlaceSeen]:
+    """Yield the facts about places that are not certain."""
+    measured: dict[int, tuple[str, int]] = {}
+
+    def noted(case: str, measure: int) -> int:
+        """Return a number that stands for a measure in the place of a confidence."""
+        measured[FIRST_NOTE + len(measured)] = case, measure
+        return FIRST_NOTE + len(measured) - 1
+
+    told = [fact for fact in look.moment.facts if fact.startswith(PLACES_TOLD)]
+    facts = place_facts(look.model, look.places, Chances(look.model, look.places.rooms, noted))
+    for statement in statements(look.moment._replace(facts=(*told, *facts))):
+        if found := measured.pop(statement.confidence, None):  # once: what is stated both ways is one fact
+            yield PlaceSeen(*found, statement.true == 1)
 
 
 def _given(look: LookedAt, encoding: str) -> list[tuple[str, tuple[str, ...]]]:

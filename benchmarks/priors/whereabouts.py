@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from benchmarks.calibration.runs import LookedAt
+from benchmarks.calibration.whereabouts import TrueAlternatives
 from utak.kb.language.atoms import atom_parts
 
 
@@ -29,7 +30,7 @@ class PieceSeen(NamedTuple):
 def whereabouts_seen(look: LookedAt) -> Iterator[WhereaboutSeen]:
     """Yield the places of things that the task names, where it is known which things these are."""
     given = _given(look)
-    true = {x: look.moment.alternatives.place(x) for name, (x, *_) in given if name == "unbound"}
+    true = {x: _alternatives(look).place(x) for name, (x, *_) in given if name == "unbound"}
     claimed = [arguments for name, arguments in given if name == "claimed"]
     following = {arguments[0] for name, arguments in given if name == "next"}
     for name, arguments in given:
@@ -53,8 +54,14 @@ def pieces_seen(look: LookedAt) -> Iterator[PieceSeen]:
     for name, arguments in given:
         if name == "touch" and arguments[0] not in whole:
             one, other, felt, share = arguments
-            if (true := look.moment.alternatives.is_one_thing(one, other)) is not None:
+            if (true := _alternatives(look).is_one_thing(one, other)) is not None:
                 yield PieceSeen(felt, int(share), true)
+
+
+def _alternatives(look: LookedAt) -> TrueAlternatives:
+    """Return the truth beside a moment of a run."""
+    assert look.moment.alternatives is not None
+    return look.moment.alternatives
 
 
 def _given(look: LookedAt) -> list[tuple[str, tuple[str, ...]]]:

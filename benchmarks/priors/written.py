@@ -1,12 +1,13 @@
-"""The file of priors: ASP facts, a group for each predicate, a row for each bin, with the number of things counted."""
+"""The files of priors: ASP facts, a group for each predicate, a row for each bin, with the number of things counted."""
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 
 from benchmarks.priors.bins import Bin
 from benchmarks.priors.count import Counted
 
+Documented = Mapping[str, tuple[str, str, str]]
 # By predicate: its arguments; what it says, as documentation; the same as words of explanations.
 WORDS = {
     "counted_solid": (
@@ -52,6 +53,14 @@ WORDS = {
         "{W} were one thing",
     ),
 }
+COUNTED_OF_PLACES = {
+    "counted_chance": (
+        "K, L, U, W",
+        "Of 1000 facts about places of case K (kb/world/chances.py) that were measured with L to U percent, W were "
+        "true.",
+        "of 1000 facts of case {K} about places that were measured with {L} to {U} percent, {W} were true",
+    ),
+}
 CONSTANTS = {  # by case: numbers that Python reads, percent
     "cut": (
         "cut_object",
@@ -74,13 +83,7 @@ def text(counted: Sequence[Counted], movable: Counted | None, told: Iterable[str
         *(f"%     {line}" for line in told),
         "",
     ]
-    for predicate, rows in groupby(counted, lambda row: row.predicate):
-        facts = [row for row in rows if row.given[0] not in CONSTANTS]
-        lines += [*_documented(predicate), '%! because "It was counted by benchmarks.priors."', f"{predicate}("]
-        lines += [
-            f"    {_arguments(row)}{';' if row is not facts[-1] else ''}  % {row.true} / {row.of}" for row in facts
-        ]
-        lines += [").", ""]
+    lines += _facts(counted, WORDS)
     for row in counted:
         if row.predicate == "counted_object" and row.given[0] in CONSTANTS:
             lines += _constant(*CONSTANTS[str(row.given[0])], row)
@@ -95,9 +98,41 @@ def text(counted: Sequence[Counted], movable: Counted | None, told: Iterable[str
     return "\n".join(lines) + "\n"
 
 
-def _documented(predicate: str) -> list[str]:
+def places_text(counted: Sequence[Counted], told: Iterable[str]) -> str:
+    """Return the file of what was counted of places. told : how it was made, a line each."""
+    lines = [
+        "% How often facts about places were true, by what was measured of them: kb/world/chances.py makes confidences",
+        "% of it. No number here is chosen: thousandths by Laplace's rule, (true + 1) / (counted + 2). After each row:",
+        "% true / counted.",
+        "",
+        "% It was made so, and is made anew by the same command:",
+        *(f"%     {line}" for line in told),
+        "",
+        *_facts(counted, COUNTED_OF_PLACES),
+        "% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----",
+        "",
+    ]
+    for predicate, (arguments, _, words) in COUNTED_OF_PLACES.items():
+        lines += _wrapped(f"{predicate}({arguments})", words)
+    return "\n".join(lines) + "\n"
+
+
+def _facts(counted: Sequence[Counted], words: Documented) -> list[str]:
+    """Return the facts of predicates, a row each, with what documents them."""
+    lines: list[str] = []
+    for predicate, rows in groupby(counted, lambda row: row.predicate):
+        facts = [row for row in rows if row.given[0] not in CONSTANTS]
+        lines += [*_documented(predicate, words), '%! because "It was counted by benchmarks.priors."', f"{predicate}("]
+        lines += [
+            f"    {_arguments(row)}{';' if row is not facts[-1] else ''}  % {row.true} / {row.of}" for row in facts
+        ]
+        lines += [").", ""]
+    return lines
+
+
+def _documented(predicate: str, words: Documented) -> list[str]:
     """Return the block that documents a predicate."""
-    arguments, what, _ = WORDS[predicate]
+    arguments, what, _ = words[predicate]
     return [
         f"%*! {predicate}({arguments})",
         *textwrap.wrap(f"{what} *%", PRIORS_LINE_WIDTH, initial_indent="    ", subsequent_indent="    "),

@@ -298,11 +298,13 @@ class FactExplainer:
 
 
 def _door_doubts(name: str, arguments: tuple[str, ...], chosen: str, step: int) -> list[Reason]:
-    """Return why a door is believed less surely than rooms.lp has it; [] where it is not."""
+    """Return why a door is not believed as rooms.lp has it; [] where it is."""
     if name not in ("door", "connects") or arguments[-1] == atom_parts(chosen)[1][-1]:
         return []
     doubts = "a square on its line, a wall at its ends, or how wide it and the floor beside it are"
-    return [Reason("it is not beyond doubt", f"this is not settled: {doubts}", ReasonKind.MEASURED, f"step {step}")]
+    counted = f"{arguments[-1]} percent of such necks were doors"
+    because = f"this is not settled: {doubts}; {counted}"
+    return [Reason("it is not beyond doubt", because, ReasonKind.MEASURED, f"step {step}")]
 
 
 def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
@@ -311,7 +313,7 @@ def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
         east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[1:])
         return f"where the robot believes that it woke lies {east:g} squares east and {north:g} north of where it is"
     if name == "kind" and len(arguments) == 3 and arguments[0] in (FLOOR_NODE, VERGE_NODE):
-        return f"the squares of the {arguments[0]} are settled to {arguments[2]} percent on average"
+        return f"the squares of the {arguments[0]} are such with {arguments[2]} percent on average"
     return words_of("belief", fact)
 
 

@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 
 from utak.kb.language.atoms import signature_of
 from utak.kb.perception.regions import Percept, Region
-from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
+from utak.kb.reasoning.encodings import KB_ENCODINGS, encoding_constant, encoding_facts
 from utak.kb.reasoning.solver import solve
 from utak.kb.reasoning.user_rules import predicates_read, rules_reach
 from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
+PLACE_PRIORS = KB_ENCODINGS / "place_priors.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
 TAKEN = KB_ENCODINGS / "taken.lp"
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
@@ -41,6 +42,26 @@ class Kinds(NamedTuple):
 
 
 NO_KINDS = Kinds({}, frozenset())
+
+
+def counted_percent(case: str, measure: int) -> int:
+    """Return how often facts about places of a case were true that were measured alike; both 1 to 99, in percent.
+
+    >>> 0 < counted_percent("corner", 50) < 100
+    True
+    """
+    thousandths = next(share for least, most, share in _counted_chances()[case] if least <= measure <= most)
+    return min(max(round(thousandths / 10), 1), 99)
+
+
+@cache
+def _counted_chances() -> Mapping[str, Sequence[tuple[int, int, int]]]:
+    """Return by case the counts of facts about places: from which measure to which, and how many of 1000 were true."""
+    found: dict[str, list[tuple[int, int, int]]] = {}
+    for case, *numbers in encoding_facts(PLACE_PRIORS, "counted_chance", 4):
+        least, most, share = (int(number) for number in numbers)
+        found.setdefault(str(case), []).append((least, most, share))
+    return found
 
 
 def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> list[str]:

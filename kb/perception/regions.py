@@ -18,7 +18,7 @@ class Region(NamedTuple):
 
     name: str  # `part<n>`, n from 1
     occupied: bool  # Whether it is a region of occupied squares rather than of free ones
-    certain: int  # Percent of its squares that are surely so, whatever counts the gray levels stand for
+    certain: int  # Percent of its squares that are so, by the chance of each; 100 only where all of them surely are
     rim: bool  # Whether it touches what was not seen
     extent: int  # The longer side of its containing rectangle, in squares
     mass: int  # The expected number of its occupied squares, in tenths of squares
@@ -44,11 +44,18 @@ def map_regions(
     size = np.bincount(labels.ravel(), minlength=count + 1)
     sure = np.bincount(labels.ravel(), certain.ravel(), minlength=count + 1)
     weight = occupied if probability is None else probability
+    as_said = certain if probability is None else np.where(certain, 1, np.where(occupied, weight, 1 - weight))
+    likely = np.bincount(labels.ravel(), as_said.ravel(), minlength=count + 1)
     mass = np.bincount(labels.ravel(), weight.ravel(), minlength=count + 1)
     longest = extents(labels, count)
     regions = tuple(
         Region(
-            f"part{n}", n > zero.number, int(100 * sure[n] // size[n]), n in open_, int(longest[n]), round(10 * mass[n])
+            f"part{n}",
+            n > zero.number,
+            _percent(likely[n], int(sure[n]), int(size[n])),
+            n in open_,
+            int(longest[n]),
+            round(10 * mass[n]),
         )
         for n in range(1, count + 1)
     )
@@ -60,7 +67,13 @@ def region_of(mask: Bools, name: str, sure: Bools, probability: NDArray[np.float
     rows, columns = np.nonzero(mask)
     extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
     mass = round(10 * float(probability[mask].sum()))
-    return Region(name, True, int(100 * sure[mask].sum() // len(rows)), False, extent, mass)
+    likely = float(np.where(sure, 1, probability)[mask].sum())
+    return Region(name, True, _percent(likely, int(sure[mask].sum()), len(rows)), False, extent, mass)
+
+
+def _percent(likely: float, sure: int, size: int) -> int:
+    """Return how many of some squares are likely so, in percent; 100 only where all are sure, and at least 1."""
+    return 100 if sure == size else min(max(int(100 * likely / size), 1), 99)
 
 
 def label_of(name: str) -> int:

@@ -20,8 +20,9 @@ SHARED_FILES = {
     "movable": ("priors",),
     "chances": ("priors_of_whereabouts",),
 }
+COUNTED_FACTS = ("place_priors",)  # files of facts alone, which Python reads
 SHARED_PARTS = frozenset(
-    name for names in SHARED_FILES.values() for name in names
+    [*COUNTED_FACTS, *(name for names in SHARED_FILES.values() for name in names)]
 )  # they are no encodings by themselves
 # Bounded searches look for the best answer from below first (unsatisfiable cores), which ends where branch and bound
 # does not; measured by benchmarks.orders.strategies. Where it does not end, branch and bound tells the best so far.
@@ -82,3 +83,15 @@ def encoding_constant(encoding: Path, name: str) -> int:
     if symbol is None:
         raise KeyError(f"{encoding.name} defines no constant {name}")
     return symbol.number
+
+
+@cache
+def encoding_facts(path: Path, name: str, arity: int) -> tuple[tuple[str | int, ...], ...]:
+    """Return the arguments of the facts of a predicate that a file states, names as text."""
+    control = clingo.Control()
+    control.add("base", [], path.read_text(encoding="utf-8"))
+    control.ground([("base", [])])
+    return tuple(
+        tuple(a.number if a.type == clingo.SymbolType.Number else str(a) for a in atom.symbol.arguments)
+        for atom in control.symbolic_atoms.by_signature(name, arity)
+    )

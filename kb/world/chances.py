@@ -5,7 +5,7 @@ them is at least 1 and at most 99. Arrays are [row, column] on those of the mode
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats
-from utak.geometry.raster.components import with_edge_neighbours
+from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
+from utak.kb.perception.interpretation import LONGEST_OBJECT, counted_percent
 from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from utak.kb.perception.regions import extents
 from utak.kb.world.corners import Corner
 from utak.kb.world.doors import ENCODED_DOOR_RATIO, jamb
 from utak.kb.world.model import ROOT_NODE, VERGE_NODE, Node, WorldModel
@@ -35,11 +37,9 @@ class Widths(NamedTuple):
     most: float
 
 
-def percent(chance: float, certain: bool) -> int:
-    """Return a chance, 0 to 1, in percent: 100 for what is certain and for nothing else, 0 for what cannot be."""
-    if certain:
-        return 100
-    return min(max(int(100 * chance), 1), 99) if chance > 0 else 0
+def measured(chance: float) -> int:
+    """Return a chance as it was measured, 0 to 1, in percent: neither 0 nor 100."""
+    return min(max(int(100 * chance), 1), 99)
 
 
 class _Body(NamedTuple):
@@ -65,10 +65,13 @@ def _greatest_beside(values: NDArray[Any]) -> NDArray[Any]:
 
 
 class Chances:
-    """The confidence of the facts about places of one world model."""
+    """The confidence of the facts about places of one world model.
 
-    def __init__(self, model: WorldModel, rooms: Rooms) -> None:
-        self.model, self.rooms = model, rooms
+    What is not certain has a measure, percent: by `rate` it becomes a confidence, as it was counted for its case.
+    """
+
+    def __init__(self, model: WorldModel, rooms: Rooms, rate: Callable[[str, int], int] = counted_percent) -> None:
+        self.model, self.rooms, self._rate = model, rooms, rate
         view = model.view
         self.is_sure = view.sure and not model.lost and not model.contradicted
         self._open = view.state == OPEN
@@ -79,13 +82,27 @@ class Chances:
 
     def rooms_of(self, node: Node | None) -> list[tuple[int, int]]:
         """Return the rooms in which the middle of an object may lie, or the robot (None), with percent, by number."""
+        # The room with the greatest share has what was counted for such shares; the others share what that leaves.
         box, exact = self._robot_box() if node is None else self._middle_box(node)
         shares, is_clear = self._shares(box)
-        certain = exact and self.is_sure and is_clear and len(shares) == 1
-        found = {room: percent(share, certain) for room, share in sorted(shares.items()) if room != NO_ROOM}
-        if (beyond := sum(found.values()) - 100) > 0:  # what is hardly possible counts as 1 percent
-            found[max(found, key=lambda room: found[room])] -= beyond
-        return list(found.items())
+        shares.pop(NO_ROOM, None)
+        if not shares:
+            return []
+        if exact and self.is_sure and is_clear and len(shares) == 1 and all(map(self._is_settled, shares)):
+            return [(room, 100) for room in shares]
+        whole, first = sum(shares.values()), min(shares, key=lambda room: (-shares[room], room))
+        sure = self._rate("in_robot" if node is None else "in_thing", measured(shares[first] / whole))
+        left = whole - shares[first]
+        found = {room: int((100 - sure) * share / left) for room, share in shares.items() if room != first}
+        return sorted((room, share) for room, share in (*found.items(), (first, sure)) if share > 0)
+
+    def _is_settled(self, room: int) -> bool:
+        """Return whether no door can part a room: none has it on both sides, and all in it and about it is settled."""
+        inside = self.rooms.labels == room
+        about = with_edge_neighbours(inside)
+        at_edge = bool(inside[[0, -1]].any() or inside[:, [0, -1]].any())
+        settled = self._surely_free | self._surely_occupied
+        return not at_edge and bool(settled[about].all()) and all(d.sides != (room, room) for d in self.rooms.doors)
 
     def _robot_box(self) -> tuple[Box, bool]:
         """Return where the robot may be, and whether it is surely there."""
@@ -138,12 +155,20 @@ class Chances:
         robot, verge = self._robot().about(), _Body(0, 0, self._verge_chances, self._sure_verge)
         names = list(bodies)
         for number, name in enumerate(names):
-            yield from _touching(ROOT_NODE, robot, name, bodies[name])
+            yield from self._touching(ROOT_NODE, robot, name, bodies[name])
             without = self._without(verge, self.model.object(name), about[name])
-            yield from _touching(name, about[name], VERGE_NODE, without)
+            yield from self._touching(name, about[name], VERGE_NODE, without)
             for other in names[number + 1 :]:
-                yield from _touching(name, about[name], other, bodies[other])
-        yield from _touching(ROOT_NODE, robot, VERGE_NODE, verge)
+                yield from self._touching(name, about[name], other, bodies[other])
+        yield from self._touching(ROOT_NODE, robot, VERGE_NODE, verge)
+
+    def _touching(self, name: str, about: _Body, other: str, body: _Body) -> Iterator[tuple[str, str, int]]:
+        """Yield two things with the percent of belief that they touch, unless that cannot be; `about` is of one."""
+        chance, certain = _meeting(about, body)
+        if chance > 0:
+            between = "robot" if name == ROOT_NODE else "verge" if other == VERGE_NODE else "things"
+            case = f"adjacent_{between}{'' if self.is_sure else '_unsure'}"
+            yield name, other, 100 if certain else self._rate(case, measured(chance))
 
     def _body(self, node: Node) -> _Body:
         """Return where an object may be: its squares, and open ones beside them."""
@@ -186,11 +211,13 @@ class Chances:
 
     @cached_property
     def _sure_verge(self) -> Bools:
-        """Squares that are verge beyond doubt: almost surely verge, and no piece that may be a thing."""
+        """Squares that are verge beyond doubt: almost surely verge, and no piece that may be of a thing."""
         sure = self.model.walls & self._surely_occupied
         if sure.any():
             for piece in self.model.unfelt_pieces:
                 sure &= ~piece
+            pieces = components(sure)  # what is settled to be longer than any thing is no part of one
+            sure = (extents(pieces.labels, pieces.number) > LONGEST_OBJECT)[pieces.labels] & sure
         felt = [square for square, colour in self.model.felt.items() if colour == VERGE_TOUCH_COLOUR]
         found: Bools = sure | (self.model.squares(felt) & self._surely_occupied)
         return found
@@ -207,10 +234,15 @@ class Chances:
 
     def of_door(self, door: Door, widths: Widths) -> int:
         """Return the percent of belief in a door; 100 only when what is seen of both sides leaves no doubt."""
-        if door.confidence < 100:
-            return door.confidence
         certain = self.is_sure and self._is_open(door) and self._is_wide(door, widths.most) and self._is_walled(door)
-        return percent(1.0, certain)
+        if door.confidence == 100 and certain:
+            return 100
+        return self._rate("door_seen" if self._are_sides_seen(door) else "door_unseen", measured(door.confidence / 100))
+
+    def _are_sides_seen(self, door: Door) -> bool:
+        """Return whether a half of what makes a neck a door was seen on both of its sides: floor as wide as itself."""
+        one, other = (float(self._likely_clearance[self.rooms.labels == side].max(initial=0.0)) for side in door.sides)
+        return door.sides[0] != door.sides[1] and 2 * min(one, other) >= ENCODED_DOOR_RATIO * door.width / 2
 
     def _is_open(self, door: Door) -> bool:
         """Return whether all squares along the line of a door are free beyond doubt."""
@@ -229,6 +261,13 @@ class Chances:
     def _clearance(self) -> Floats:
         """The distance of each square that is free beyond doubt to the nearest one that is not."""
         clearance: Floats = Screen(self._surely_free).clearance
+        return clearance
+
+    @cached_property
+    def _likely_clearance(self) -> Floats:
+        """The distance of each square that is free more likely than not to the nearest one that is not."""
+        view = self.model.view
+        clearance: Floats = Screen(view.seen & (view.probability < 0.5)).clearance
         return clearance
 
     def widths(self, door: Door) -> Widths:
@@ -275,7 +314,9 @@ class Chances:
             occupied = float(self._part(self.model.view.probability, row, column, (1, 1), 0.5)[0, 0])
             chance *= 1 - occupied if is_floor else occupied
             certain = certain and self._is(known, column + 0.5, row + 0.5)
-        return percent(chance, certain)
+        if chance <= 0:
+            return 0
+        return 100 if certain else self._rate("corner" if self.is_sure else "corner_unsure", measured(chance))
 
     def _is(self, mask: Bools, x: float, y: float) -> bool:
         """Return whether the square at a point is in a mask; False for one outside of it."""
@@ -283,19 +324,18 @@ class Chances:
         return 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1] and bool(mask[row, column])
 
 
-def _touching(name: str, about: _Body, other: str, body: _Body) -> Iterator[tuple[str, str, int]]:
-    """Yield two things with the percent of belief that they touch, unless that cannot be; `about` is that of one."""
+def _meeting(about: _Body, body: _Body) -> tuple[float, bool]:
+    """Return how likely two things meet in their likeliest square, and whether they surely do; `about` is of one."""
     south, west = max(about.south, body.south), max(about.west, body.west)
     north = min(about.south + about.chance.shape[0], body.south + body.chance.shape[0])
     east = min(about.west + about.chance.shape[1], body.west + body.chance.shape[1])
     if south >= north or west >= east:
-        return
+        return 0.0, False
     parts = [
         (slice(south - one.south, north - one.south), slice(west - one.west, east - one.west)) for one in (about, body)
     ]
     chance = float((about.chance[parts[0]] * body.chance[parts[1]]).max())
-    if chance > 0:
-        yield name, other, percent(chance, bool((about.sure[parts[0]] & body.sure[parts[1]]).any()))
+    return chance, bool((about.sure[parts[0]] & body.sure[parts[1]]).any())
 
 
 def _overlaps(low: float, high: float, size: int) -> tuple[slice, Floats]:

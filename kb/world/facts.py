@@ -110,7 +110,7 @@ def _long_facts(model: WorldModel, places: Places) -> Iterator[str]:
         yield from _object_facts(node, model)
         yield from _part_facts(node, model)
     yield from _region_facts(model)
-    yield from _place_facts(model, places, Chances(model, places.rooms))
+    yield from place_facts(model, places, Chances(model, places.rooms))
     yield from pathgraph_facts(model, places.rooms)
 
 
@@ -135,17 +135,22 @@ def _root_facts(model: WorldModel) -> Iterator[str]:
     for name, kind, parent in ((FLOOR_NODE, "floor", ROOT_NODE), (VERGE_NODE, "verge", FLOOR_NODE)):
         yield f"node({name})"
         yield f"child({parent},{name})"
-        yield f"kind({name},{kind},{_share_settled(model, kind)})"
+        yield f"kind({name},{kind},{_share(model, kind)})"
     yield f"offset({FLOOR_NODE},{hundredths(-east)},{hundredths(-north)})"
     yield f"offset({VERGE_NODE},0,0)"
     if model.held:
         yield f"held({model.held})"
 
 
-def _share_settled(model: WorldModel, kind: str) -> int:
-    """Return the mean confidence in the squares of the floor or the verge, in percent; 0 when there are none."""
+def _share(model: WorldModel, kind: str) -> int:
+    """Return how many squares of the floor or the verge are such, by the chance of each, in percent; 0 for none."""
     mask = model.floor if kind == "floor" else model.verge
-    return int(_square_confidence(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
+    if not mask.any():
+        return 0
+    occupied = model.view.probability[mask]
+    chance = 1 - occupied if kind == "floor" else occupied
+    likely = np.where(model.certain[mask], 1, np.minimum(chance, SETTLED_CONFIDENCE / 100))
+    return int(100 * float(likely.mean()) + 1e-6)
 
 
 def _square_confidence(model: WorldModel) -> Longs:
@@ -268,7 +273,7 @@ def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list
     return [int(share) for share in settled.mean(axis=1)]
 
 
-def _place_facts(model: WorldModel, places: Places, chances: Chances) -> Iterator[str]:
+def place_facts(model: WorldModel, places: Places, chances: Chances) -> Iterator[str]:
     """Yield the facts of rooms, doors and corners, of what lies in which room and what touches what."""
     # Rooms r1, r2, ... come first, in order, then the doors in the order of `rooms`.
     rooms = places.rooms

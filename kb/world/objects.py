@@ -82,7 +82,7 @@ def separate_felt_things(
     for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
-        cut.append(region_of(thing, f"part{label}", view.state == OCCUPIED, view.probability))
+        cut.append(region_of(thing, f"part{label}", (view.state == OCCUPIED) & view.sure, view.probability))
     touched = [(f"part{labels[place]}", colour) for place, colour in colours.items()]
     apart = {region.name for region in cut}
     found = interpret_cut(cut, (one for one in touched if one[0] in apart), rules) if cut else NO_KINDS

@@ -8,23 +8,25 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from shapely import Polygon, box
+from shapely import Point, Polygon, box
 from shapely.affinity import rotate, translate
 
 from benchmarks.calibration import __main__ as calibration
 from benchmarks.calibration.dealt import DealtWorld, dealt, made
 from benchmarks.calibration.figures import NO_CLASS, RECTANGLE, class_of
+from benchmarks.calibration.moments import Moment
+from benchmarks.calibration.necks import door_necks
 from benchmarks.calibration.picture import picture
-from benchmarks.calibration.statements import HeldStatement, Moment, statements
+from benchmarks.calibration.statements import HeldStatement, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
 from benchmarks.calibration.truth import TableTruth
 from benchmarks.calibration.whereabouts import TrueAlternatives
 from benchmarks.claims.asked import Asked, all_kinds
 from benchmarks.harness.beliefs import TableFrame
 from benchmarks.priors import __main__ as priors
-from benchmarks.priors.bins import ANY, EXTENT, MASS, WHOLE, Bin, bin_of, bins
-from benchmarks.priors.count import Counted, counted_classes, counted_kinds
-from benchmarks.priors.measures import FitSeen, RegionSeen
+from benchmarks.priors.bins import ANY, EXTENT, MASS, PLACES, WHOLE, Bin, bin_of, bins
+from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_places
+from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
 from benchmarks.worlds.furniture import OUTLINE_SHAPES, outline
 from utak.kb.task.task import task_from_texts
 from utak.kb.world.rooms import Rooms
@@ -62,7 +64,7 @@ def moment(*facts: str, **nodes: tuple[int, int, int, int]) -> Moment:
     """Return a moment on a table of 20 x 16 squares. nodes : west, south, east, north of each, in squares."""
     floor = box(2, 2, 18, 14)
     plan = SimpleNamespace(width=20, height=16, floor=floor, verge=box(0, 0, 20, 16).difference(floor))
-    world = SimpleNamespace(plan=plan, things=(THING, STONE), heading=0)
+    world = SimpleNamespace(plan=plan, things=(THING, STONE), heading=0, utak=Point(5, 8))
     door = (box(18, 6, 20, 10), 4.0)
     truth = TableTruth(DealtWorld(Asked("plugged", 0), world, (door,)), {}, (12.5, 8.5))
     squares = {
@@ -70,12 +72,11 @@ def moment(*facts: str, **nodes: tuple[int, int, int, int]) -> Moment:
         for name, (west, south, east, north) in nodes.items()
     }
     nodes = {name: truth.of(there) for name, there in squares.items()}
-    return Moment(
-        facts, nodes, squares, truth, TrueAlternatives(SQUARE, MODEL, ROOMS, TableFrame(0, 0, 0), truth, nodes)
-    )
+    alternatives = TrueAlternatives(SQUARE, MODEL, ROOMS, TableFrame(0, 0, 0), truth, nodes)
+    return Moment(facts, nodes, squares, truth, alternatives=alternatives)
 
 
-def verdicts(found: Moment) -> dict[str, bool]:
+def verdicts(found: Moment) -> dict[str, float]:
     return {statement.fact: statement.true for statement in statements(found)}
 
 
@@ -90,7 +91,7 @@ def test_statements_are_compared_with_what_is_so() -> None:
         *("kind(o1,object,90)", "kind(o1,verge,10)", "kind(org,utak,100)", "kind(o2,verge,60)"),
         *("shape(o1,square,70)", "shape(o1,disc,5)", "shape(o1,rectangle,80)", "shape(o1,polygon,95)"),
         *("shape(o2,square,30)", "colour(o1,r,99)", "movable(o1,95)", "movable(o5,95)", "movable(o2,1)"),
-        *("adjacent(org,o1)", "adjacent(o1,o5,40)", "unheard_of(o1)"),
+        *("adjacent(org,o1,9)", "adjacent(o1,o5,40)", "unheard_of(o1)"),
     )
     assert verdicts(moment(*facts, o1=(3, 3, 6, 6), o2=(0, 0, 3, 3), o5=(8, 3, 10, 8))) == {
         "kind(o1,object,90)": True,
@@ -104,7 +105,7 @@ def test_statements_are_compared_with_what_is_so() -> None:
         "movable(o1,95)": True,
         "movable(o5,95)": False,
         "movable(o2,1)": False,
-        "adjacent(org,o1)": False,
+        "adjacent(org,o1,9)": False,
         "adjacent(o1,o5,40)": False,
     }
 
@@ -116,21 +117,88 @@ def test_where_a_thing_is_that_nobody_saw_is_compared_with_what_is_so() -> None:
     assert verdicts(moment("may_be(y,r1,70)")) == {}
 
 
+HERE = "offset(org,0,0)"
+DOOR, NO_DOOR = "threshold(d1,550,-250,550,150)", "threshold(d2,-850,-650,-850,550)"
+
+
 def test_doors_and_corners_are_found_where_they_are() -> None:
-    here = "offset(org,0,0)"
     facts = (
-        *(here, "threshold(d1,550,-250,550,150)", "door(d1)", "width(d1,400)", "width(d1,450,500,80)"),
-        *("threshold(d2,-850,-250,-850,150)", "door(d2,40)", "width(d2,400)"),
-        *("corner(northeast,550,550,70)", "corner(southwest,0,0,30)", "corner(northeast,550,550)"),
+        *(HERE, DOOR, "door(d1,100)", "width(d1,390,410)", "width(d1,450,500)"),
+        *(NO_DOOR, "door(d2,40)", "width(d2,300,500)"),
+        *("corner(northeast,550,550,70)", "corner(southwest,50,50,30)"),
     )
     assert verdicts(moment(*facts)) == {
-        "door(d1)": True,
-        "width(d1,400)": True,
-        "width(d1,450,500,80)": False,
+        "door(d1,100)": True,
+        "width(d1,390,410)": True,
+        "width(d1,450,500)": False,
         "door(d2,40)": False,
         "corner(northeast,550,550,70)": True,
-        "corner(southwest,0,0,30)": False,
+        "corner(southwest,50,50,30)": False,
     }
+
+
+def squares(west: int, south: int, east: int, north: int) -> frozenset[tuple[int, int]]:
+    return frozenset((x, y) for x in range(west, east) for y in range(south, north))
+
+
+def test_rooms_are_the_parts_of_the_floor_between_doors() -> None:
+    two = box(2, 2, 9, 14).union(box(11, 2, 18, 14)).union(box(9, 6, 11, 9))
+    facts = (HERE, "threshold(d1,-250,-250,-250,50)", "door(d1,90)")
+    facts += ("connects(d1,r1,r2,90)", "connects(d1,r1,r1,90)", "in(org,r1,60)", "in(org,r2,40)", "in(o1,r1,99)")
+    found = moment(*facts, o1=(3, 3, 6, 6))
+    world = SimpleNamespace(
+        plan=SimpleNamespace(width=20, height=16, floor=two, verge=box(0, 0, 20, 16).difference(two)),
+        things=(THING,),
+        heading=0,
+        utak=Point(5, 8),
+    )
+    truth = TableTruth(DealtWorld(Asked("plugged", 0), world, None), {}, (12.5, 8.5))
+    assert [width for _, width in truth.doors] == [3.0]  # where nobody says which doors there are, geometry does
+    rooms = {"r1": squares(2, 2, 9, 14), "r2": squares(11, 2, 18, 14)}
+    woke = found._replace(truth=truth, rooms=rooms | {"r1": squares(2, 2, 18, 14)})
+    assert verdicts(woke)["in(o1,r1,99)"]  # r1 is where it woke, wherever else it is believed to reach
+    assert verdicts(found._replace(truth=truth, rooms=rooms)) == {
+        "door(d1,90)": True,
+        "connects(d1,r1,r2,90)": True,
+        "connects(d1,r1,r1,90)": False,
+        "in(org,r1,60)": False,
+        "in(org,r2,40)": True,
+        "in(o1,r1,99)": True,
+    }
+
+
+def test_a_door_that_is_none_parts_no_true_room() -> None:
+    assert not door_necks(box(2, 2, 18, 14), 20, 16)
+    found = moment(HERE, NO_DOOR, "in(org,r1,60)", "in(org,r2,40)", "connects(d2,r1,r2,30)")
+    rooms = {"r1": squares(4, 2, 18, 14), "r2": squares(2, 2, 4, 6)}
+    expected = {"in(org,r1,60)": True, "in(org,r2,40)": False, "connects(d2,r1,r2,30)": False}
+    assert verdicts(found._replace(rooms=rooms)) == expected
+
+
+def test_what_speaks_of_many_squares_is_true_to_a_share() -> None:
+    facts = (HERE, "region(part1,zero,90)", "region(part2,nonzero,100)", "kind(floor,floor,99)", "kind(verge,verge,99)")
+    facts += ("segment(verge,0,-1050,-650,-1050,-150,100)",)
+    parts = {"part1": squares(2, 2, 4, 4), "part2": squares(0, 0, 2, 2) | squares(12, 4, 14, 6)}
+    found = moment(*facts)._replace(regions=parts, solid=squares(0, 2, 2, 7))
+    wholes = {"floor": squares(6, 6, 8, 8), "verge": squares(0, 0, 4, 4)}
+    assert verdicts(found._replace(squares=wholes)) == {
+        "region(part1,zero,90)": 0.75,  # a corner of t1 is in it
+        "region(part2,nonzero,100)": 0.5,
+        "kind(floor,floor,99)": 1,
+        "kind(verge,verge,99)": 0.75,
+        "segment(verge,0,-1050,-650,-1050,-150,100)": 1,
+    }
+    assert verdicts(found._replace(solid=frozenset()))["segment(verge,0,-1050,-650,-1050,-150,100)"] == 0.5
+
+
+def test_a_square_that_was_crossed_and_is_covered_in_part_is_both() -> None:
+    floor = box(2.5, 2, 18, 14)
+    plan = SimpleNamespace(width=20, height=16, floor=floor, verge=box(0, 0, 20, 16).difference(floor))
+    world = SimpleNamespace(plan=plan, things=(THING,), heading=0, utak=Point(2.8, 10.5))
+    truth = TableTruth(DealtWorld(Asked("plugged", 0), world, ()), {}, (4.5, 10.5), [(2.8, 10.5), (4.5, 10.5)])
+    assert truth.seems((2, 10), True) and truth.seems((2, 10), False)
+    assert truth.is_kind((2, 10), "floor") and truth.is_kind((2, 10), "verge")
+    assert truth.seems((2, 8), True) and not truth.seems((2, 8), False)
 
 
 def statement(confidence: int, true: bool, alternatives: str = "") -> Held:
@@ -156,15 +224,17 @@ def test_alternatives_are_added_up() -> None:
 
 
 def test_worlds_are_dealt_of_all_kinds_before_any_comes_again() -> None:
-    number = len({(asked.kind, asked.task) for asked in dealt(200, 7)})
-    first = list(dealt(number, 7))
+    number = len({(asked.kind, asked.task) for asked, _ in dealt(200, 7, [0.0])})
+    first = [asked for asked, _ in dealt(number, 7, [0.0])]
     assert {asked.kind for asked in first} == set(all_kinds())
     assert len({(asked.kind, asked.task) for asked in first}) == number
-    assert list(dealt(5, 7)) == first[:5] != list(dealt(5, 8))
+    assert [asked for asked, _ in dealt(5, 7, [0.0])] == first[:5] != [asked for asked, _ in dealt(5, 8, [0.0])]
+    twice = list(dealt(2 * number, 7, [0.0, 0.05]))
+    assert all(noise != other for (_, noise), (_, other) in zip(twice[:number], twice[number:], strict=True))
     assert made(Asked("two_doors", 1)).doors
 
 
-@pytest.mark.parametrize("found", [*MASS.values(), *EXTENT.values(), bins(0, 3, 9)])
+@pytest.mark.parametrize("found", [*MASS.values(), *EXTENT.values(), *PLACES.values(), bins(0, 3, 9)])
 def test_bins_have_no_gaps(found: tuple[Bin, ...]) -> None:
     assert found[0].least == 0 and found[-1].most == ANY
     assert all(one.most + 1 == other.least for one, other in pairwise(found))
@@ -195,13 +265,25 @@ def test_regions_and_classes_are_counted_by_their_bins() -> None:
     assert classes["counted_none", Bin(0, 2)] == (1, 2)
 
 
+def test_facts_about_places_are_counted_by_what_was_measured() -> None:
+    seen = [PlaceSeen("corner", 15, False), PlaceSeen("corner", 19, True), PlaceSeen("corner_unsure", 15, True)]
+    found = {row.given: (row.true, row.of) for row in counted_places(seen)}
+    assert found["corner", Bin(10, 19)] == (1, 2)
+    assert found["corner_unsure", Bin(10, 19)] == (1, 1)
+
+
 @pytest.mark.long
 def test_a_world_is_run_compared_and_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     few = ["--worlds", "1", "--seed", "500", "--max-steps", "4"]
     calibration.main([*few, "--svg", str(tmp_path / "b.svg"), "--runs", str(tmp_path / "runs")])
     assert "`kind/3`" in capsys.readouterr().out and (tmp_path / "b.svg").read_text().startswith("<svg")
-    assert json.loads((tmp_path / "runs").read_text())["world"] == "own_plain:3:500"
+    (line,) = (tmp_path / "runs").read_text().splitlines()
+    assert json.loads(line)["world"] == "own_plain:3:500"
+    calibration.main([*few, "--runs", str(tmp_path / "runs")])  # what was run is not run again
+    assert (tmp_path / "runs").read_text().splitlines() == [line] and "`kind/3`" in capsys.readouterr().out
     samples, once, again = (tmp_path / name for name in ("samples", "once.lp", "again.lp"))
-    assert priors.main([*few, "--samples", str(samples), "-o", str(once)]) == 0
-    assert priors.main([*few, "--samples", str(samples), "--recount", "-o", str(again)]) == 0
+    places = ["--places", str(tmp_path / "places.lp")]
+    assert priors.main([*few, *places, "--samples", str(samples), "-o", str(once)]) == 0
+    assert "counted_chance(" in (tmp_path / "places.lp").read_text()
+    assert priors.main([*few, *places, "--samples", str(samples), "--recount", "-o", str(again)]) == 0
     assert once.read_text() == again.read_text() and "counted_solid(" in once.read_text()

@@ -108,7 +108,7 @@ def test_no_walk_names_objects_where_none_is_asked_for_and_the_floor_is_no_belie
     text = questions.why_step(1).text()
     assert "No goal for an object is open" in text
     assert "All objects" not in text
-    assert questions.why("kind(floor, floor, C)", 0).because.startswith("the squares of the floor are settled to ")
+    assert questions.why("kind(floor, floor, C)", 0).because.startswith("the squares of the floor are such with ")
     assert any(fact.startswith("in(org,r1") for fact in steps[0].facts)
     assert any(fact.startswith("in(org,r2") for fact in steps[-1].facts)
     refuted = [(s.number, f) for s in steps for f in s.facts if f.startswith("refuted(")]

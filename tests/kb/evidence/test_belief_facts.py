@@ -67,7 +67,8 @@ def test_what_is_believed_and_not_known_is_told_apart_from_what_is_not_believed(
 
 def test_a_door_that_is_less_sure_than_its_neck_says_why(questions: Questions) -> None:
     facts = questions.beliefs.record.steps[questions.last_step].facts
-    door = next(fact for fact in facts if fact.startswith("door(d1,99"))
+    door = next(fact for fact in facts if fact.startswith("door(d1,"))
+    assert not door.endswith(",100)")
     assert "it is not beyond doubt" in claims(questions.why(door))
 
 

@@ -10,11 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Polygon, affinity
 
+from benchmarks.priors.bins import PLACES
 from tests.kb.drawings import known_model
 from utak.kb.language.atoms import atom_parts, long_form, short_form
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.mapping.occupancy import OPEN
-from utak.kb.world.chances import Chances, percent
+from utak.kb.perception.interpretation import counted_percent
+from utak.kb.world.chances import Chances, measured
 from utak.kb.world.corners import corners
 from utak.kb.world.facts import Places, model_facts
 from utak.kb.world.model import WorldModel
@@ -88,12 +90,13 @@ def test_open_squares_make_facts_uncertain_and_never_contradict(squares: list[tu
 
 
 def test_what_one_open_square_decides() -> None:
-    """An open square between two things counts with its probability."""
+    """An open square between two things is measured by its probability, and has what was counted for that."""
     rows = [WALL, *["b" + "." * 30 + "b"] * 2, *["b..gg.hh" + "." * 23 + "b"] * 3, "b....U" + "." * 25 + "b", WALL]
     model = known_model(rows)
-    assert "adjacent(o1,o2,30)" not in stated(model)
+    touching = f"adjacent(o1,o2,{counted_percent('adjacent_things', 30)})"
+    assert touching not in stated(model)
     between = doubted(model, [(2, 5)], 0.3)
-    assert "adjacent(o1,o2,30)" in stated(between) and "adjacent(o1,o2)" not in stated(between)
+    assert touching in stated(between) and "adjacent(o1,o2)" not in stated(between)
     assert "adjacent(o1,org)" in stated(between)
 
 
@@ -111,12 +114,29 @@ def test_nothing_is_known_of_a_map_in_doubt() -> None:
     assert not any(fact.endswith(",100)") for fact in doubtful if fact.partition("(")[0] in places)
 
 
-@pytest.mark.parametrize(
-    ("chance", "certain", "share"),
-    [(0.0, False, 0), (1e-9, False, 1), (0.5, False, 50), (1.0, False, 99), (1.0, True, 100)],
-)
-def test_percent(chance: float, certain: bool, share: int) -> None:
-    assert percent(chance, certain) == share
+@pytest.mark.parametrize(("chance", "share"), [(1e-9, 1), (0.5, 50), (1.0, 99)])
+def test_what_is_measured_is_neither_excluded_nor_certain(chance: float, share: int) -> None:
+    assert measured(chance) == share
+
+
+@pytest.mark.parametrize("case", PLACES)
+def test_every_measure_of_a_place_has_a_counted_confidence(case: str) -> None:
+    found = [counted_percent(case, measure) for measure in range(1, 100)]
+    assert all(1 <= share <= 99 for share in found)
+
+
+def test_the_likeliest_room_has_what_was_counted_and_the_others_share_the_rest() -> None:
+    model = known_model(ROWS)
+    cases: list[tuple[str, int]] = []
+
+    def noted(case: str, measure: int) -> int:
+        cases.append((case, measure))
+        return 60
+
+    doubted_map = replace(model, view=model.view._replace(sure=False))
+    found = Chances(doubted_map, rooms_of(model), noted).rooms_of(model.objects[0])
+    assert [case for case, _ in cases] == ["in_thing"]
+    assert sum(share for _, share in found) in (60, 100) and max(share for _, share in found) == 60
 
 
 def test_the_middle_of_a_thing_is_where_its_open_squares_leave_it() -> None:
