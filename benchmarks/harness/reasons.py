@@ -172,8 +172,10 @@ def _derived(rule: str, atoms: tuple[str, ...], constants: str) -> frozenset[str
 
 @lru_cache(maxsize=32)
 def _constants(path: Path) -> str:
-    """Return the `#const` statements of an encoding."""
-    return "\n".join(line for line in path.read_text().splitlines() if line.startswith("#const")) + "\n"
+    """Return the `#const` statements of an encoding, and of the counts beside it."""
+    files = {path, *path.parent.glob("priors*.lp")}
+    lines = (line for file in sorted(files) for line in file.read_text().splitlines())
+    return "\n".join(line for line in lines if line.startswith("#const")) + "\n"
 
 
 NODE_CHECKS = {

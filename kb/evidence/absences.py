@@ -75,7 +75,7 @@ class AbsenceExplainer:
             found = explain_query_absence(self._facts.record.steps[step].facts, wanted, self._rule_files)
             in_way = tuple(reason for fact in found.in_way if (reason := self._facts.reason(fact, step)) is not None)
             return self._reason_of(wanted, found, in_way, step)
-        call = call_deriving(self._facts.record.decisions(step), signature, self._rule_files)
+        call = call_deriving(self._facts.record.decisions(step), wanted, self._rule_files)
         if call is None:
             raise BadInputError([unknown_predicate(wanted, signature, self._rule_files)])
         return self._absence(wanted, step, call, wanted, step)

@@ -9,6 +9,7 @@ from utak.kb.explanation.programs import decision_program
 from utak.kb.explanation.proof import explain_decision
 from utak.kb.explanation.values import ProofNode, RivalChoice
 from utak.kb.explanation.wording import atom_words
+from utak.kb.language.atoms import atom_parts
 from utak.kb.language.diagnostics import Problem, SourceSpan
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature, hint_for
 from utak.kb.reasoning.user_rules import read_rules
@@ -53,8 +54,11 @@ def query_predicates(rule_files: Sequence[str]) -> frozenset[Signature]:
     return frozenset(head.signature for one in rules for head in one.heads)
 
 
-def call_deriving(calls: Sequence[SolverCall], signature: Signature, rule_files: Sequence[str]) -> SolverCall | None:
-    """Return the newest of some answers in whose encoding users' rules define a predicate; None for none."""
+def call_deriving(calls: Sequence[SolverCall], atom: str, rule_files: Sequence[str]) -> SolverCall | None:
+    """Return the newest of some answers whose encoding has users' rules for the predicate of an atom; None for none."""
+    # Of several encodings that know the rule, one that was given something about what the atom names.
+    name, arguments = atom_parts(atom)
+    signature, named = (name, len(arguments)), set(arguments)
     if not rule_files or signature in query_predicates(rule_files):
         return None
     rules, newest_first = read_rules(tuple(rule_files)), tuple(reversed(calls))
@@ -64,7 +68,9 @@ def call_deriving(calls: Sequence[SolverCall], signature: Signature, rule_files:
         for name in names
         if any(head.signature == signature for one in rules.rules_reaching(name) for head in one.heads)
     }
-    return next((call for call in newest_first if call.encoding in deriving), None)
+    known = [call for call in newest_first if call.encoding in deriving]
+    about = (call for call in known if any(not named.isdisjoint(atom_parts(fact)[1]) for fact in call.facts))
+    return next(about, next(iter(known), None))
 
 
 def unknown_predicate(text: str, signature: Signature, rule_files: Sequence[str]) -> Problem:

@@ -161,7 +161,7 @@ class Questions:
 
         name, arguments = atom_parts(atom)
         signature = name, len(arguments)
-        call = call_deriving(self.beliefs.record.decisions(step), signature, self._rule_files)
+        call = call_deriving(self.beliefs.record.decisions(step), atom, self._rule_files)
         if call is not None:
             return self.beliefs.prove(call, atom, step)
         if signature not in BELIEF_PREDICATES and signature not in query_predicates(self._rule_files):

@@ -89,7 +89,9 @@ def test_a_kidnapped_robot_recognises_the_failure_and_maps_the_room_again() -> N
         stroll = kidnapped(seed)
         assert {"lost", "lifted"} & {*stroll.hows[5:8]}, seed
         assert stroll.wrong == 0.0, seed
-        assert len(stroll.knowledge.memory.track) == len(stroll.hows)
+        # Looks from a map that was begun meanwhile are no part of the one that is recognised.
+        assert len(stroll.knowledge.memory.track) <= len(stroll.hows)
+        assert stroll.knowledge.memory.lifted_at or len(stroll.knowledge.memory.track) == len(stroll.hows)
 
 
 @pytest.mark.long
@@ -140,8 +142,8 @@ def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
     assert isinstance(decision.command, Release)
     knowledge.tracker.state = replace(knowledge.memory, residuals=(MAX_RESIDUAL, MAX_RESIDUAL))
     model, accommodated = knowledge.perceive(Release(), sees)
-    assert accommodated.explanation.how == "lost"
-    assert model.anew
+    assert accommodated.explanation.how == "slipped"  # what it sees is the map of before, which it recognises
+    assert not model.anew and model.interrupted
     assert not model.lost
     assert not knowledge.memory.held_objects
 
