@@ -85,7 +85,7 @@ def test_a_wide_opening_is_a_door() -> None:
     scenario = utak.Scenario.from_text(world=WIDE_OPENING, start="", goal="in(utak, room(next)).")
     without, with_it = pair(5, scenario, 12)
     assert not any(fact.startswith("door(") for fact in facts(without))
-    assert "door(d1,99)." in facts(with_it)
+    assert any(fact.startswith("door(d1,") for fact in facts(with_it))
     assert (without.verdict, with_it.verdict) == ("limit", "done")
 
 

@@ -27,7 +27,7 @@ def test_a_robot_that_was_lost_does_not_say_that_it_is_back(goal: str, told: boo
     ring = [(middle.x + a * abs(x - middle.x), middle.y + b * 4) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     track = [(x, y), *ring, (x, y)]
     for anew, verdict in ((False, TaskVerdict.DONE), (True, TaskVerdict.DONE if told else TaskVerdict.LIMIT)):
-        situation = situation_of(replace(model, anew=anew), {"x": "g"})
+        situation = situation_of(replace(model, anew=anew, interrupted=anew), {"x": "g"})
         turn = replace(turn_of(Stage(facts_from_text(f"{goal}.")), situation), track=track)
         found = OwnGoals(destination).go(turn, Intention(WhereGoalsHold(None, None, destination)))  # type: ignore[arg-type]
         assert found.verdict == verdict, found.why

@@ -153,9 +153,9 @@ def test_goals_are_asked_about_anew_when_what_is_held_was_led_out_before_walls_a
 def test_an_obstacle_that_may_be_wall_is_felt_first() -> None:
     situation = known(BEFORE)
     (node,) = situation.model.objects
-    unsure = situation_of(replace(situation.model, objects=(replace(node, confidence=40),)))
+    unsure = situation_of(replace(situation.model, objects=(replace(node, confidence=40, felt_first=True),)))
     assert "colour" in Clearing().before(UTAK, unsure).why
-    hardly = situation_of(replace(situation.model, objects=(replace(node, confidence=10),)))
+    hardly = situation_of(replace(situation.model, objects=(replace(node, confidence=10, felt_first=True),)))
     assert "it is felt" in Clearing().before(UTAK, hardly).why  # what it is taken for is a wall
     assert Clearing().before(UTAK, felt(hardly)).result == "idle"
 

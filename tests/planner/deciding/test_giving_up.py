@@ -37,6 +37,7 @@ class Undecided:
     bound: Mapping[str, str] = {}
     corners: Mapping[str, Corner] = {}
     plan = attempt = None
+    alternatives: tuple[str, ...] = ()
 
     def __init__(self) -> None:
         self.asked: list[bool] = []

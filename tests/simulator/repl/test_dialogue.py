@@ -106,7 +106,7 @@ def test_queries_facts_and_the_names_of_the_robot(dialogue: Dialogue, capsys: py
     assert talk(dialogue, capsys, "offset(utak, E, N),", "E < 0.")[0].startswith("E ")
     utak, org = (talk(dialogue, capsys, f"facts {name}")[0] for name in ("utak", "org"))
     assert utak == org
-    assert "in(org,r1)." in utak
+    assert "in(org,r1,99)." in utak
     assert talk(dialogue, capsys, "facts parameter")[0] == "parameter(x).\n"
     assert talk(dialogue, capsys, "facts nothing")[0] == "none\n"
     assert talk(dialogue, capsys, ";")[1] == "there are no more rows\n"
@@ -127,7 +127,7 @@ def test_possible_worlds(dialogue: Dialogue, capsys: pytest.CaptureFixture[str])
 
 def test_since_and_diff(dialogue: Dialogue, capsys: pytest.CaptureFixture[str]) -> None:
     talk(dialogue, capsys, "goto 2")
-    assert talk(dialogue, capsys, "since in(utak, r1).")[0] == "it holds since step 0\n"
+    assert talk(dialogue, capsys, "since room(r1).")[0] == "it holds since step 0\n"
     answers = [json.loads(json.dumps(dialogue.story.facts_at(step))) for step in range(3)]
     held = [any(fact.startswith("bound(x,") for fact in facts) for facts in answers]
     out = talk(dialogue, capsys, "since bound(x, _)")[0]
