@@ -185,6 +185,7 @@ class Knowledge:
             regions.kinds,
             objects=(),
             looked_from=memory.looked_from,
+            looked_since=memory.looked_since,
             barred=memory.closed,
             spread=memory.spread,
             likely_spread=memory.likely_spread,

@@ -64,6 +64,8 @@ class TrackerState:
     in_hand: str | None = None  # the name of the object in the hand; None when the hand is empty
     # Number of unexplained fields of each of the last observations, oldest first; 4 at most
     residuals: tuple[int, ...] = ()
+    # The number of the first observation since one left fields unexplained; 0 while none did
+    sound_since: int = 0
     # Places of the observations before the tracker began anew, oldest first, (east, north) in squares, Utak's own frame
     been: tuple[Position, ...] = ()
     # The newest completions of the map in this frame (sampled maps that agree with all counts); None when none were
@@ -118,6 +120,11 @@ class TrackerState:
     def looked_from(self) -> frozenset[Square]:
         """Return the squares from which the observations of the present map were made: (column, row), map frame."""
         return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
+
+    @property
+    def looked_since(self) -> frozenset[Square]:
+        """Return the squares from which observations were made since one left fields unexplained; map frame."""
+        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) + self.sound_since :])
 
     @property
     def passed(self) -> frozenset[Square]:

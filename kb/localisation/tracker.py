@@ -389,6 +389,7 @@ class Tracker:
             held_objects=held_objects,
             observations=(*state.observations, observation),
             residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.unexplained),
+            sound_since=number + 1 if explanation.unexplained else state.sound_since,
             place=_standing_place(state, explanation.place),
         )
         return Accommodation(explanation, fields)

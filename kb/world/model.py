@@ -95,6 +95,8 @@ class WorldModel:
     held: str | None = None  # The name of the object in hand
     missing: tuple[str, ...] = ()  # The names of things that are no longer where they lay, and were not seen since
     looked_from: frozenset[Square] = frozenset()  # The squares on which an impression was received, map frame
+    # The same since an impression contradicted what is believed; all of them while none did
+    looked_since: frozenset[Square] = frozenset()
     barred: frozenset[Square] = frozenset()  # Squares that stopped a motion, or probably did, map frame
     spread: float = 0.0  # Radians by which the true orientation of the frame may differ from the believed one
     likely_spread: float = 0.0  # Radians by which it is likely to differ

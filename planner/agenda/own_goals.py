@@ -18,7 +18,12 @@ from utak.planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
 from utak.planner.deciding.search import contact_subgoals, subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
-from utak.planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
+from utak.planner.deciding.verification import (
+    check_elsewhere,
+    look_at_contradiction,
+    look_since_contradiction,
+    robot_square,
+)
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
 from utak.planner.goals.joint import is_apart_from_start, too_far_reason
 from utak.planner.goals.placement import to_view_frame
@@ -105,6 +110,8 @@ class OwnGoals:
         situation, model = turn.situation, turn.situation.model
         contradiction = look_at_contradiction(situation)
         doubts = [] if contradiction is None else [contradiction]
+        meant = (situation.object_of(str(goal.args[0])) for goal in turn.stage.goals)
+        doubts += filter(None, (look_since_contradiction(node, situation) for node in meant if node is not None))
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
             node = situation.object_of(x)

@@ -19,6 +19,7 @@ from utak.planner.goals.bounds import unfelt_bounds
 from utak.planner.goals.robot_goals import robot_stands_on
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.screen.projection import dilate
 from utak.planner.sights import frontiers
 from utak.planner.sights.viewpoints import TO_TAKE, inspection
 from utak.planner.situation import Situation
@@ -88,6 +89,21 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
     what = "what is seen differs from what is believed"
     look = frontiers.viewpoint_of(situation.cost_maps, robot_square(model), what)
     return Subgoal(SubgoalKind.INSPECT, *look)
+
+
+def look_since_contradiction(node: Node, situation: Situation) -> Subgoal | None:
+    """Return a look from close by at a moved object, if none was taken since an impression contradicted the map."""
+    # What was seen before may lie on squares of a map that has changed since.
+    model = situation.model
+    if not node.moved or model.looked_since == model.looked_from:
+        return None
+    squares = model.mask(node.patch)
+    if (dilate(squares, frontiers.FOVEA_RANGE) & model.squares(model.looked_since)).any():
+        return None
+    look = frontiers.viewpoint_of(
+        situation.cost_maps, squares, f"{node.name} was not seen closely since looks differed"
+    )
+    return Subgoal(SubgoalKind.INSPECT, *look) if len(look.squares) else None
 
 
 def robot_square(model: WorldModel) -> Bools:
