@@ -27,6 +27,7 @@ from utak.planner.deciding.verification import (
     check_elsewhere,
     look_at_contradiction,
     look_before_grasp,
+    look_since_contradiction,
     unseen_beyond_door,
 )
 from utak.planner.sights.frontiers import FOVEA_RANGE
@@ -119,6 +120,19 @@ def test_after_a_contradiction_the_robot_looks_from_elsewhere_near_by() -> None:
     assert len(away)
     assert away.min() > 0
     assert away.max() <= FOVEA_RANGE
+
+
+def test_what_was_moved_is_seen_from_close_by_again_after_a_contradiction() -> None:
+    model = known_model(BESIDE_A_THING)
+    (node,) = model.objects
+    here, far = (math.floor(model.place[0]), math.floor(model.place[1])), (1000, 1000)
+    moved = replace(model, objects=(replace(node, moved=True),), looked_from=frozenset({here, far}))
+    for looked, again in (({here, far}, False), ({here}, False), ({far}, True), (set(), True)):
+        situation = situation_of(replace(moved, looked_since=frozenset(looked)))
+        found = look_since_contradiction(situation.model.objects[0], situation)
+        assert (found is not None) == again, looked
+    unmoved = situation_of(replace(model, looked_from=frozenset({here})))
+    assert look_since_contradiction(node, unmoved) is None
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
