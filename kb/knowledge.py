@@ -87,8 +87,8 @@ class Knowledge:
         held, former = self.memory.held_objects, begun.state.former
         if self.memory.former is None and former is not None:
             self._former_names = deepcopy(self._names)
-            moved = {name: len(load.possible.squares()) for name, load in held.items()}
-            self._former_names.miss({name: size for name, size in moved.items() if name not in former.held_objects})
+            moved = (load for name, load in held.items() if name not in former.held_objects)
+            self._former_names.miss({load.name: len(load.possible.squares()) for load in moved})
         self.tracker = begun
         self._names.forget()
         woken = self.tracker.wake(impression)

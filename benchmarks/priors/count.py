@@ -1,7 +1,7 @@
 """Counts: how often each alternative was true, given the measures that confidences are conditioned on."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -107,26 +107,26 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
 
 def counted_whereabouts(places: Iterable[WhereaboutSeen]) -> Iterator[Counted]:
     """Yield how many places of each case were where the thing was; those that a claim is against are left out."""
-    seen = [place for place in places if not place.against]
-    for case, measures in WHEREABOUT_MEASURE.items():
-        for measure in measures:
-            there = [place for place in seen if place.case == case and measure.holds(place.measure)]
-            yield Counted("counted_place", (case, measure), sum(place.true for place in there), len(there))
+    seen = ((place.case, place.measure, place.true) for place in places if not place.against)
+    return _counted_by_case("counted_place", WHEREABOUT_MEASURE, seen)
 
 
 def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:
     """Yield how many pairs of pieces that touch were one thing, by what was felt and the class of their outline."""
-    seen = list(pieces)
-    for felt, shares in JOINED.items():
-        for share in shares:
-            there = [piece for piece in seen if piece.felt == felt and share.holds(piece.share)]
-            yield Counted("counted_joined", (felt, share), sum(piece.one for piece in there), len(there))
+    return _counted_by_case("counted_joined", JOINED, pieces)
 
 
 def counted_places(places: Iterable[PlaceSeen]) -> Iterator[Counted]:
     """Yield how often facts about places were true, by their case and by what was measured."""
-    seen = list(places)
-    for case, measures in PLACES.items():
+    return _counted_by_case("counted_chance", PLACES, places)
+
+
+def _counted_by_case(
+    predicate: str, bins: Mapping[str, Sequence[Bin]], seen: Iterable[tuple[str, int, bool]]
+) -> Iterator[Counted]:
+    """Yield how many of what was seen, each a case, a measure and whether it was true, were true in each bin."""
+    found = list(seen)
+    for case, measures in bins.items():
         for measure in measures:
-            there = [place for place in seen if place.case == case and measure.holds(place.measure)]
-            yield Counted("counted_chance", (case, measure), sum(place.true for place in there), len(there))
+            there = [true for one, value, true in found if one == case and measure.holds(value)]
+            yield Counted(predicate, (case, measure), sum(there), len(there))

@@ -119,12 +119,16 @@ class TrackerState:
     @property
     def looked_from(self) -> frozenset[Square]:
         """Return the squares from which the observations of the present map were made: (column, row), map frame."""
-        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
+        return self._looked_from(0)
 
     @property
     def looked_since(self) -> frozenset[Square]:
         """Return the squares from which observations were made since one left fields unexplained; map frame."""
-        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) + self.sound_since :])
+        return self._looked_from(self.sound_since)
+
+    def _looked_from(self, first: int) -> frozenset[Square]:
+        """Return the squares from which the observations of the present map were made from a number on; map frame."""
+        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) + first :])
 
     @property
     def passed(self) -> frozenset[Square]:

@@ -7,7 +7,7 @@ occupancy map. Each of its 160 fields counts as predicted, as explained (it show
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from utak.kb.body import Command, Impression, Move, Push, Release, Turn
@@ -71,19 +71,14 @@ class Tracker:
         """Return a tracker that begins anew at the believed place, with an empty map and all frame hypotheses."""
         # The believed frame and place stay, and the track is kept, so that the robot knows about where it came from;
         # the newest observation is left out of it, for it is made again. Who is lost may recognise the map of before.
-        state = self.state
-        former = state.former or (_before_contradictions(state) if lost else None)
-        been = (*state.been, *(observation.place for observation in state.observations[:-1]))
-        begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-        return Tracker(replace(begun, former=former, unsteady=True))
+        former = self.state.former or (_before_contradictions(self.state) if lost else None)
+        return _begun(self.state, self.state.observations[:-1], former, unsteady=True)
 
     def elsewhere(self) -> "Tracker":
         """Return a tracker of a robot that others put somewhere: it begins anew, and keeps what was believed before."""
         # The newest observation fits nowhere, and was not integrated.
         state = self.state
-        been = (*state.been, *(observation.place for observation in state.observations))
-        begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-        return Tracker(replace(begun, former=state.former or state, unsteady=state.slips))
+        return _begun(state, state.observations, state.former or state, unsteady=state.slips)
 
     def recognise(self, command: Command) -> Accommodation | None:
         """Look for the newest observations on the map of before; go on with that if they fit at one place of it."""
@@ -92,11 +87,9 @@ class Tracker:
             return None
         first, newest = state.observations[0].place, state.observations[-1]
         away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
-        self.state = state = replace(
-            # Whose motions slip does not know how its looks lie to each other.
-            state,
-            looks=(*(() if state.slips else state.looks), look_at(former.surprise(command, newest.ranges), away)),
-        )
+        earlier = () if state.slips else state.looks  # whose motions slip does not know how its looks lie to each other
+        look = look_at(former.surprise(command, newest.ranges), away)
+        self.state = state = replace(state, looks=(*earlier, look))
         is_known = len(former.observations) >= MIN_KNOWN_LOOKS and not state.held_objects
         found = recognise(former.occupancy, state.looks) if is_known else None
         if found is None or (state.slips and len(set(map(_square_of, found.points))) > 1):  # later looks would not tell
@@ -114,7 +107,8 @@ class Tracker:
 
         squares = {point: tuple(map(_square_of, (add(point, way) for way in ways))) for point in found.points}
         against = {one: clashes(point) for point, one in reversed(squares.items())}
-        fitting = [point for point in found.points if against[squares[point]] == min(against.values())]
+        least = min(against.values())
+        fitting = [point for point in found.points if against[squares[point]] == least]
         chosen = [point for point in fitting if squares[point] == squares[fitting[0]]]
         place, error = place_of(chosen, fitting, half_cell(state.looks))
         self._put_elsewhere((0.0, 0.0, 0.0, 0.0) if state.slips else error)
@@ -393,6 +387,13 @@ class Tracker:
             place=_standing_place(state, explanation.place),
         )
         return Accommodation(explanation, fields)
+
+
+def _begun(state: TrackerState, made: Iterable[Observation], former: TrackerState | None, unsteady: bool) -> Tracker:
+    """Return a tracker with an empty map at the believed place; `made`: the observations whose places are kept."""
+    been = (*state.been, *(observation.place for observation in made))
+    begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
+    return Tracker(replace(begun, former=former, unsteady=unsteady))
 
 
 def _before_contradictions(state: TrackerState) -> TrackerState | None:

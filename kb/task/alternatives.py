@@ -3,7 +3,7 @@
 Geometry measures; the encoding makes chances of it, by what was counted.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from utak.kb.world.place_names import WAKING_ROOM
 from utak.kb.world.rooms import NO_ROOM, Rooms
 
 CHANCES = KB_ENCODINGS / "chances.lp"
-CLAIMED_PLACES = ("claim", "related")  # claims, of which those of `in` tell of places
 
 
 def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
@@ -46,7 +45,7 @@ def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconci
         for node in free:
             case = "likely" if (x, node.name) in may_turn_out else "other"
             yield f"place({x},{node.name},{case},{_likeness(node, x, task)})"
-    yield from _claimed_rooms(unbound, task, rooms, bound.items())
+    yield from _claimed_rooms(unbound, task, rooms, bound)
 
 
 def _likeness(node: Node, parameter: str, task: Task) -> int:
@@ -76,19 +75,17 @@ def _unseen_places(model: WorldModel, rooms: Rooms) -> Iterator[str]:
             yield f"{door.name},door,{door.confidence}"
 
 
-def _claimed_rooms(unbound: Iterable[str], task: Task, rooms: Rooms, bound: Iterable[tuple[str, str]]) -> Iterator[str]:
+def _claimed_rooms(unbound: Collection[str], task: Task, rooms: Rooms, bound: Mapping[str, str]) -> Iterator[str]:
     """Yield in which rooms the task says that things are, and which rooms are next to the first one."""
-    means = dict(bound)
-    told = set(unbound)
     said = False
     for fact in claim_facts(task):
         name, _, rest = fact.partition("(")
         parts = rest.removesuffix(")").split(",")
-        if name == "claim" and parts[0] in told and parts[1:3] == ["in", "room(next)"]:
+        if name == "claim" and parts[0] in unbound and parts[1:3] == ["in", "room(next)"]:
             said = True
             yield f"claimed({parts[0]},next,{parts[3]})"
-        elif name == "related" and parts[0] == "in" and parts[1] in told and parts[2] in means:
-            yield f"claimed({parts[1]},{means[parts[2]]},{parts[3]})"
+        elif name == "related" and parts[0] == "in" and parts[1] in unbound and parts[2] in bound:
+            yield f"claimed({parts[1]},{bound[parts[2]]},{parts[3]})"
     if said:
         doors = [door for door in rooms.doors if WAKING_ROOM in door.sides]
         near = {side for door in doors for side in door.sides} - {WAKING_ROOM, NO_ROOM}

@@ -30,7 +30,7 @@ from utak.kb.localisation.hypotheses.reestimation import (
     WalkInFrame,
     remap_if_consistent,
 )
-from utak.kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
+from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, object_at, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
     MotionHypothesis,
@@ -147,11 +147,9 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
             continue
         corrected, correction = _corrected(surprise, motion, end)
         if shift not in judged:
-            judged[shift] = remap_if_consistent(
-                frame, corrected.observations, corrected.held_objects.values(), corrected.unsettled_discs, begun=first
-            )
+            judged[shift] = _consistent_map(corrected, first)
         under = judged[shift]
-        if under is None or under.residual:
+        if under is None:
             continue
         ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.observations, motion, frame))
         if ahead == FREE:
@@ -163,6 +161,15 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
             yield ReestimatedMotion(walk, what_if)
 
 
+def _consistent_map(corrected: Surprise, begun: MapReplay) -> RemappedMap | None:
+    """Return the map of all corrected observations, in the believed frame; None where one contradicts the others."""
+    held_objects = corrected.held_objects.values()
+    under = remap_if_consistent(
+        corrected.frame, corrected.observations, held_objects, corrected.unsettled_discs, begun=begun
+    )
+    return None if under is None or under.residual else under
+
+
 def _slips(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """Yield ends whole squares beside the commanded end of one motion, with which no observation is contradicted."""
     frame, first = surprise.frame, surprise.prefixes.first(motion.number)
@@ -171,10 +178,8 @@ def _slips(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reestimated
     end = add(surprise.observations[motion.number - 1].place, motion.shift)
     for place in slipped_ends(frame.place_from_utak(*end)):
         corrected, correction = _corrected(surprise, motion, WalkEnd(frame.place_to_utak(*place), 1))
-        under = remap_if_consistent(
-            frame, corrected.observations, corrected.held_objects.values(), corrected.unsettled_discs, begun=first
-        )
-        if under is None or under.residual:
+        under = _consistent_map(corrected, first)
+        if under is None:
             continue
         supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
         for what_if in _newest_after_slip(supposed):

@@ -1,5 +1,7 @@
 """In whole runs it is stated where a thing may be until it is found, and what may be one thing until it has moved."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -58,12 +60,19 @@ def test_one_place_holds_in_each_possible_world() -> None:
     assert acts["may_be(x,r1)"] == ("look(r1)",)
 
 
-def test_rules_of_users_are_evidence_of_places(tmp_path: Path) -> None:
-    rules = tmp_path / "rules.lp"
-    rules.write_text(":- true(may_be(X, verge)).     % nothing is taken for a wall\n")
-    facts = episode("go_to_square_unseen")[0].world.facts
+@contextmanager
+def engine_with(folder: Path, text: str) -> Iterator[QueryEngine]:
+    """Return an engine for queries with rules of users."""
+    rules = folder / "rules.lp"
+    rules.write_text(text)
     with QueryEngine() as engine:
         engine.use_rules([str(rules)])
+        yield engine
+
+
+def test_rules_of_users_are_evidence_of_places(tmp_path: Path) -> None:
+    facts = episode("go_to_square_unseen")[0].world.facts
+    with engine_with(tmp_path, ":- true(may_be(X, verge)).     % nothing is taken for a wall\n") as engine:
         found = {fact: least for fact, least, _, _ in engine.worlds(facts, 1).open}
     places = stated("go_to_square_unseen", "may_be")[0]
     rest = 100 - places["x", "verge"]
@@ -72,11 +81,8 @@ def test_rules_of_users_are_evidence_of_places(tmp_path: Path) -> None:
 
 
 def test_rules_of_users_read_them_in_queries_alone(tmp_path: Path) -> None:
-    rules = tmp_path / "rules.lp"
-    rules.write_text("hidden_thing(X, R) :- may_be(X, R, C), room(R), C > 20.\n")
     facts = episode("go_to_square_unseen")[0].world.facts
-    with QueryEngine() as engine:
-        engine.use_rules([str(rules)])
+    with engine_with(tmp_path, "hidden_thing(X, R) :- may_be(X, R, C), room(R), C > 20.\n") as engine:
         assert str(engine.ask(facts, "hidden_thing(x, r1)")) == "yes"
     assert not MADE_LAST & WORLD_FACTS_THERE["task"]
 
