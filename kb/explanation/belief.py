@@ -82,8 +82,9 @@ def _unit(entry: dict[str, Any], rules: Sequence[Statement], sentences: Sequence
     """Return a unit from the response of the worker."""
     number = entry["statement"]
     one, names = rules[number], tuple(entry["names"])
+    named = tuple(name for name in one.variables if name in names)
     rule = RuleText(one.source.file, one.at[0], one.at[1], " ".join(one.written.split()), "rule", sentences[number])
-    return RuleUnit(rule, names, names, tuple(entry["literals"]), tuple(map(tuple, entry["conditions"])))
+    return RuleUnit(rule, named, names, tuple(entry["literals"]), tuple(map(tuple, entry["conditions"])))
 
 
 def _add_object(fact: str, supports: dict[str, list[Support]]) -> None:
@@ -108,7 +109,8 @@ def _add_other_form(fact: str, supports: dict[str, list[Support]]) -> None:
 def _instance(support: Support) -> RuleInstance:
     """Return a rule with the values of one of its instances."""
     rule, values = support.unit.rule, dict(zip(support.unit.names, support.values, strict=True))
-    return RuleInstance(rule, tuple(values.items()), fill(rule.sentence, values) or rule.text)
+    named = tuple((name, values[name]) for name in support.unit.variables)
+    return RuleInstance(rule, named, fill(rule.sentence, values) or rule.text)
 
 
 def _none(_support: Support) -> tuple[()]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from utak.kb.explanation.support import CountedElement, LiteralValue, aggregate_value
 from utak.kb.language.atoms import atom_parts
 from utak.kb.reasoning.sentences import PredicateWords, fill
-from utak.kb.three_valued.uncertain_values import MIRRORED_SIGNS
+from utak.kb.three_valued.values import MIRRORED_SIGNS
 from utak.kb.tracing.syntax import ANY_NAME, JsonValues
 
 WordsByPredicate = Mapping[tuple[str, int], PredicateWords]

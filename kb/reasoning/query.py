@@ -3,8 +3,7 @@
 A query without variables has the answer yes, no or don't know. A query with variables has the rows of values for which
 it certainly holds; when there is none, no or don't know. Besides the facts, queries can use `object(N)`, which stands
 for `kind(N, object, C)`. `utak.kb.three_valued.evaluation` decides what is certain, possible or false, by the table
-`BELIEF_PREDICATES`
-of kb.language.vocabulary; docs/files.md describes the rules.
+`BELIEF_PREDICATES` of kb.language.vocabulary; docs/files.md describes the rules.
 """
 
 import math

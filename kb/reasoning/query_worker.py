@@ -19,17 +19,14 @@ from utak.kb.language.diagnostics import did_you_mean
 from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from utak.kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
 from utak.kb.three_valued.aliases import rename_utak_to_org
-from utak.kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
-from utak.kb.three_valued.derivation import derive
-from utak.kb.three_valued.evaluation import find_bindings
-from utak.kb.three_valued.join_order import unsafe_variable_error
+from utak.kb.three_valued.arithmetic import ClauseError
+from utak.kb.three_valued.compilation import names_in
+from utak.kb.three_valued.evaluation import Evaluation
 from utak.kb.three_valued.known_words import ConstantNames, check_body, names_in_facts, types_of_variables
 from utak.kb.three_valued.open_world import Beliefs, FactRow
-from utak.kb.three_valued.provenance import certain_instances
-from utak.kb.three_valued.term_values import Bindings
-from utak.kb.three_valued.uncertain_values import Value
 from utak.kb.tracing.possible_worlds import likeliest_worlds
 from utak.kb.tracing.requests import respond
+from utak.kb.tracing.syntax import SyntaxPart, outer_parts
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
 # Seconds of processor time for one request; a convention, well above every limit at which the parent ends the process.
@@ -58,7 +55,7 @@ class QueryError(Exception):
 class BelievedFacts:
     """Facts and users' rules, ready for any number of queries."""
 
-    beliefs: Beliefs  # the facts, and the atoms that the rules derive from them
+    evaluation: Evaluation  # the facts, and the atoms that the rules derive from them
     known: frozenset[Signature]  # the predicates (name, number of arguments) of which queries can be made
     names: ConstantNames  # the constants in the facts as text, by the name of the argument type
 
@@ -66,14 +63,13 @@ class BelievedFacts:
 def believed_facts(facts: Iterable[Sequence[int | str]], rules: Sequence[str] = ()) -> BelievedFacts:
     """Return facts together with what users' rules derive from them."""
     beliefs = Beliefs(_facts(facts))
-    signatures = beliefs.signatures()
-    defining = _clauses_of_rules(rules)
-    defined = {clause.head.signature for clause in defining if clause.head is not None}
+    signatures = beliefs.signatures
     try:
-        derive(defining, beliefs)
+        evaluation = Evaluation(beliefs, _parsed_rules(rules))
     except ClauseError as error:
         raise RuleError(error) from None
-    return BelievedFacts(beliefs, frozenset({*BELIEF_PREDICATES, *signatures, *defined}), names_in_facts(signatures))
+    known = frozenset({*BELIEF_PREDICATES, *signatures, *evaluation.derived})
+    return BelievedFacts(evaluation, known, names_in_facts(signatures))
 
 
 def answer_query(
@@ -85,18 +81,16 @@ def answer_query(
 
 def answer_over(believed: BelievedFacts, query: str, max_rows: int | None = None) -> Response:
     """Return the answer to a query over facts and the atoms that rules derive from them."""
-    beliefs = believed.beliefs
-    beliefs.join_orders.clear()  # of former queries
-    clauses = [rename_utak_to_org(clause) for clause in translate_rule(_query_as_rule(query))]
+    clauses = [SyntaxPart(one) for one in _query_as_rule(query).unpool()]
     for clause in clauses:
-        check_body(clause.body, believed.known, believed.names)
-    variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
-    rows: dict[FactRow, None] = {}
-    for clause in clauses:
-        rows |= dict.fromkeys(
-            _row(found, variables, clause) for found in find_bindings(clause.body, {}, beliefs, False)
-        )
-    types = {name: slot.name for clause in clauses for name, slot in types_of_variables(clause.body)}
+        rename_utak_to_org(clause)
+    bodies = [clause.body for clause in clauses]
+    for body in bodies:
+        check_body(body, believed.known, believed.names)
+    outer = names_in(part for body in bodies for literal in body for part in outer_parts(literal))
+    variables = [name for name in outer if name != "_"]
+    rows = {tuple(row) for body in bodies for row in believed.evaluation.rows(body, variables)}
+    types = {name: slot.name for body in bodies for name, slot in types_of_variables(body)}
     found = {"variables": variables, "types": [types.get(name, "") for name in variables], "rows": [], "more": False}
     if rows:
         sorted_rows = sorted(([_json_value(value) for value in row] for row in rows), key=_sort_key)
@@ -105,39 +99,17 @@ def answer_over(believed: BelievedFacts, query: str, max_rows: int | None = None
             | {"answer": "bindings" if variables else "yes", "rows": sorted_rows[:max_rows] if variables else []}
             | {"more": max_rows is not None and len(sorted_rows) > max_rows}
         )
-    possible = any(True for clause in clauses for _ in find_bindings(clause.body, {}, beliefs, True))
-    return found | {"answer": "don't know" if possible else "no"}
+    return found | {"answer": "don't know" if any(map(believed.evaluation.may_hold, bodies)) else "no"}
 
 
-def justify_rules(facts: Iterable[Sequence[int | str]], rules: Sequence[str]) -> Response:
-    """Return the instances of users' rules that certainly hold over facts, as of kb.three_valued.provenance."""
-    beliefs, defining = Beliefs(_facts(facts)), _clauses_of_rules(rules)
-    try:
-        derive(defining, beliefs)
-        return certain_instances(defining, beliefs)
-    except ClauseError as error:
-        raise RuleError(error) from None
-
-
-def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
-    """Return the clauses of rules; the line of each clause is the number of its rule, from 1."""
-    # Raises RuleError for a construct that is not supported.
+def _parsed_rules(rules: Sequence[str]) -> list[AST]:
+    """Return rules without pools; the line of each is the number of its rule, from 1."""
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
-    try:
-        clauses = (clause for part in parts if part.ast_type == ASTType.Rule for clause in translate_rule(part))
-        return [rename_utak_to_org(clause) for clause in clauses]
-    except ClauseError as error:
-        raise RuleError(error) from None
-
-
-def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
-    """Return the values of the variables, in their order."""
-    # Raise ClauseError when the query does not bind one of them.
-    missing = [name for name in variables if name not in found]
-    if missing:
-        raise unsafe_variable_error(missing[0], clause.at)
-    return tuple(found[name] for name in variables)
+    found = [one for part in parts if part.ast_type == ASTType.Rule for one in part.unpool()]
+    for one in found:
+        rename_utak_to_org(one)
+    return found
 
 
 def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
@@ -146,10 +118,10 @@ def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
 
 
 def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
-    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols."""
+    """Yield the name and the values of each fact of a request: its arguments as clingo symbols."""
     # Raises RuntimeError for a text that is no term.
     for name, *arguments in entries:
-        yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)
+        yield str(name), tuple(clingo.Number(one) if isinstance(one, int) else _parse_term(one) for one in arguments)
 
 
 @lru_cache(maxsize=65536)
@@ -170,9 +142,9 @@ def _query_as_rule(query: str) -> AST:
     return parts[1]
 
 
-def _json_value(term: Value) -> int | str:
+def _json_value(term: clingo.Symbol) -> int | str:
     """Return a value as JSON takes it: an integer, or the text of a term."""
-    return term if isinstance(term, int) else str(term)
+    return term.number if term.type == clingo.SymbolType.Number else str(term)
 
 
 def _record_message(code: clingo.MessageCode, message: str) -> None:
@@ -213,7 +185,7 @@ def _respond(line: bytes) -> Response:
         if "read" in request:
             return read_rule_text(request["read"], request["renamed"])
         if "justify" in request:
-            return justify_rules(request["facts"], request["rules"])
+            return believed_facts(request["facts"], request["rules"]).evaluation.instances()
         if "trace" in request:
             return respond(request["trace"])
         if "worlds" in request:

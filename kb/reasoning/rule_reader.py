@@ -1,7 +1,8 @@
 """Parser of users' rule files: statements, the predicates in each of them, and checked arithmetic.
 
-It runs in the process of kb.reasoning.query_worker. Arithmetic is rewritten to calls of `Calculator`, which computes
-exactly: where clingo would wrap a result to 32 bits without a message, the rule has an error.
+It runs in the process of kb.reasoning.query_worker. Arithmetic is rewritten to calls of
+kb.three_valued.functions, which compute exactly: where clingo would wrap a result to 32 bits without a message, the
+rule has an error.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -21,9 +22,8 @@ from clingo.ast import (
 )
 
 from utak.kb.language.vocabulary import Signature
-from utak.kb.three_valued.arithmetic import CalculationError, calculate
-from utak.kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
-from utak.kb.tracing.syntax import global_variables_of, head_elements, parts_of
+from utak.kb.three_valued.arithmetic import ClauseError, place_of
+from utak.kb.tracing.syntax import BINARY_SIGNS, UNARY_SIGNS, global_variables_of, head_elements, parts_of
 
 RENAMED_PREFIX = "own__"  # of the names of users' predicates where encodings have another predicate of that name
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding
@@ -191,14 +191,14 @@ class _OwnNames(Transformer):
 
 
 class _ArithmeticRewriter(Transformer):
-    """Replaces arithmetic by calls of the calculator, `@calculated(sign, place, operands)`."""
+    """Replaces arithmetic by calls of a function, `@calculate(place, sign, operands)`."""
 
     def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return the call that computes an operation on two terms: a term `@calculated(sign, place, left, right)`."""
+        """Return the call that computes an operation on two terms: a term `@calculate(place, sign, left, right)`."""
         return self._call(node, BINARY_SIGNS[node.operator_type], [self.visit(node.left), self.visit(node.right)])
 
     def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return the call that computes an operation on one term, `@calculated(sign, place, operand)`."""
+        """Return the call that computes an operation on one term, `@calculate(place, sign, operand)`."""
         if node.argument.ast_type == ASTType.SymbolicTerm:
             number = node.argument.symbol
             if UNARY_SIGNS[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
@@ -206,14 +206,14 @@ class _ArithmeticRewriter(Transformer):
         return self._call(node, UNARY_SIGNS[node.operator_type], [self.visit(node.argument)])
 
     def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return a term whose arguments have calls of the calculator in the places of their arithmetic."""
+        """Return a term whose arguments have calls of the function in the places of their arithmetic."""
         # Raises ClauseError for a function of Python (@name).
         if node.external:
             raise ClauseError("operation undefined: there are no functions from outside", place_of(node))
         return node.update(**self.visit_children(node))
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return an aggregate whose arithmetic is replaced by calls of the calculator, in the same places."""
+        """Return an aggregate whose arithmetic is replaced by calls of the function, in the same places."""
         # Raises ClauseError for a sum that is given to a variable, `X = #sum{...}`.
         summed = node.function in (AggregateFunction.Sum, AggregateFunction.SumPlus)
         guards = [guard for guard in (node.left_guard, node.right_guard) if guard is not None]
@@ -226,8 +226,8 @@ class _ArithmeticRewriter(Transformer):
     def _call(self, node: AST, sign: str, parts: list[AST]) -> AST:
         """Return the call that computes an operation; it carries the place of the operation."""
         line, column = place_of(node)
-        call_site = [SymbolicTerm(node.location, value) for value in (clingo.String(sign), _place_term(line, column))]
-        return Function(node.location, "calculated", [*call_site, *parts], 1)
+        call_site = [SymbolicTerm(node.location, value) for value in (_place_term(line, column), clingo.String(sign))]
+        return Function(node.location, "calculate", [*call_site, *parts], 1)
 
 
 def _has_variable(node: AST) -> bool:
@@ -238,26 +238,3 @@ def _has_variable(node: AST) -> bool:
 def _place_term(line: int, column: int) -> clingo.Symbol:
     """Return a place as the clingo term (line, column), both from 1."""
     return clingo.Function("", [clingo.Number(line), clingo.Number(column)])
-
-
-class Calculator:
-    """The arithmetic of rules; clingo calls `calculated` while it grounds a program."""
-
-    def __init__(self) -> None:
-        self.error: ClauseError | None = None
-
-    def calculated(self, sign: clingo.Symbol, at: clingo.Symbol, *parts: clingo.Symbol) -> list[clingo.Symbol]:
-        """Return a list with the result of an operation, a number; [] when it has none, after recording the error."""
-        # It has none for an operand that is no number, for a division by zero, and beyond 32 bits.
-        place = (at.arguments[0].number, at.arguments[1].number)
-        strange = [part for part in parts if part.type != clingo.SymbolType.Number]
-        try:
-            if strange:
-                raise ClauseError(f"operation undefined: {strange[0]} is no number", place)
-            return [clingo.Number(calculate(sign.string, *(part.number for part in parts)))]
-        except CalculationError as error:
-            shown = f" {sign.string} ".join(map(str, parts)) if len(parts) == 2 else f"{sign.string}{parts[0]}"
-            self.error = self.error or ClauseError(f"{error}, in {shown}", place)
-        except ClauseError as error:
-            self.error = self.error or error
-        return []

@@ -6,8 +6,9 @@ from typing import Any
 import clingo
 
 from utak.kb.reasoning.encodings import CORE_GUIDED
-from utak.kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
-from utak.kb.three_valued.clauses import ClauseError
+from utak.kb.reasoning.rule_reader import RuleSyntaxError, read_statements
+from utak.kb.three_valued.arithmetic import ClauseError
+from utak.kb.three_valued.functions import Functions
 
 Response = dict[str, Any]  # JSON values for the parent process
 MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those that contradict; a convention
@@ -56,7 +57,7 @@ def solve_with_rules(
         end = {"against": _conflicting_rules(program, rules)} if result.exhausted else {"cut": conflicts}
         return {**end, "applied": applied}
     control.add("observed", [], "\n".join(_observers(conditions)))
-    control.ground([("observed", [])], context=Calculator())  # after the search, which stays as it was
+    control.ground([("observed", [])], context=Functions())  # after the search, which stays as it was
     applied = _instances(control)
     derived = [
         str(atom.symbol) for name, arity in heads for atom in control.symbolic_atoms.by_signature(str(name), int(arity))
@@ -80,7 +81,7 @@ def _grounded(
 ) -> tuple[clingo.Control, Response | None]:
     """Return the grounded program, and the response to an error or None when there is none."""
     messages: list[str] = []
-    calculator = Calculator()
+    calculator = Functions()
     control = clingo.Control([*options], logger=lambda _code, text: messages.append(text), message_limit=20)
     control.enable_cleanup = False  # what a search finds never to hold is observed all the same
     try:
@@ -91,7 +92,7 @@ def _grounded(
         messages.append(str(error))
     if calculator.error is not None:
         at = calculator.error.at
-        number = next((n for n, rule in enumerate(rules) if f",({at[0]},{at[1]})," in rule), 0)
+        number = next((n for n, rule in enumerate(rules) if f"@calculate(({at[0]},{at[1]})," in rule), 0)
         return control, {"error": calculator.error.what, "at": at, "rule": number}
     telling = [message for message in messages if "does not occur in any rule head" not in message]
     return control, {"message": telling[0]} if telling else None

@@ -4,6 +4,7 @@ Division and remainder round towards zero, as clingo's do. A power with a negati
 """
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from utak.kb.language.integers import MAX_INT32, MIN_INT32
 
@@ -12,6 +13,20 @@ MAX_EXPONENT = 64  # every power of 2 or more with a greater exponent is beyond 
 
 class CalculationError(Exception):
     """A calculation has no 32-bit result; the message says why."""
+
+
+class ClauseError(Exception):
+    """A rule or a query uses an unknown word or a construct that is not supported."""
+
+    def __init__(self, what: str, at: tuple[int, int], hint: str = "") -> None:
+        self.what, self.at, self.hint = what, at, hint
+        super().__init__(what)
+
+
+def place_of(node: Any) -> tuple[int, int]:
+    """Return the line and the column, both from 1, at which a part of clingo's syntax tree begins."""
+    begin = node.location.begin
+    return begin.line, begin.column
 
 
 def require_int32(value: int) -> int:

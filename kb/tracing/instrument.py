@@ -12,29 +12,32 @@ Literals become terms: `p(X)` for an atom, a tuple of the compared terms for a c
 aggregate.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from clingo.ast import AST, ASTType, Sign
 
 from utak.kb.tracing.syntax import FUNCTIONS, SIGNS, ParsedProgram, Unit, atom_text, head_elements, is_choice_head
 
+# Returns a body as clingo joins it, from its literals and the names of the variables that have values already.
+Joined = Callable[[Sequence[AST], Sequence[str]], Sequence[AST | str]]
 
-def instance_rules(program: ParsedProgram) -> Iterator[str]:
+
+def instance_rules(program: ParsedProgram, joined: Joined = lambda body, _names: body) -> Iterator[str]:
     """Yield the helping rules for all units of a program, to be grounded over the atoms of an answer."""
     for number, unit in enumerate(program.units):
         node, names = unit.node, _tuple(unit.names)
-        yield _rule(f"trace__on({number},{names},{_tuple(literal_terms(node.body))})", node.body)
+        yield _rule(f"trace__on({number},{names},{_tuple(literal_terms(node.body))})", joined(node.body, ()))
         holds = f"trace__on({number},{names},_)"
         for element, (literal, condition) in enumerate(() if _is_weak(node) else head_elements(node.head)):
             head = f"trace__head({number},{element},{names},{atom_text(literal)},{_tuple(literal_terms(condition))})"
             if literal.sign == Sign.NoSign and literal.atom.ast_type == ASTType.SymbolicAtom:
-                yield _rule(head, [holds, *condition])
+                yield _rule(head, [holds, *joined(condition, unit.names)])
         for at, literal in enumerate(node.body):
             for element, (terms, condition) in enumerate(_elements(literal)):
                 place = f"{number},{at},{element},{names}"
                 head = f"trace__element({place},{_tuple(terms)},{_tuple(literal_terms(condition))})"
-                yield _rule(head, [holds, *condition])
+                yield _rule(head, [holds, *joined(condition, unit.names)])
 
 
 def weight_rules(program: ParsedProgram) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Requests about the answers of logic programs and the responses to them, both as JSON values."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -11,7 +11,7 @@ from utak.kb.tracing.answers import GroundedProgram, TraceError, instances
 from utak.kb.tracing.candidates import CandidateFacts, candidate_facts
 from utak.kb.tracing.changes import least_change
 from utak.kb.tracing.instrument import condition_infos, is_choice, literal_info
-from utak.kb.tracing.syntax import JsonValues, ProgramPart, parsed
+from utak.kb.tracing.syntax import JsonValues, ParsedProgram, ProgramPart, parsed
 
 
 def respond(request: JsonValues) -> JsonValues:
@@ -63,26 +63,36 @@ def _statements(parts: tuple[ProgramPart, ...]) -> JsonValues:
         "statements": [
             {key: value for key, value in one._asdict().items() if key != "node"} for one in program.statements
         ],
-        "units": [
-            {
-                "statement": unit.statement,
-                "names": list(unit.names),
-                "literals": [literal_info(one) for one in unit.node.body],
-                "conditions": [] if program.statements[unit.statement].kind == "weak" else condition_infos(unit.node),
-                "choice": is_choice(unit),
-            }
-            for unit in program.units
-        ],
+        "units": unit_infos(program),
         "shown": sorted(map(list, program.shown)),
         "declared": sorted(map(list, program.defined)),
     }
 
 
+def unit_infos(program: ParsedProgram) -> list[JsonValues]:
+    """Return what an explanation needs to know of the units of a program, as JSON values."""
+    return [
+        {
+            "statement": unit.statement,
+            "names": list(unit.names),
+            "literals": [literal_info(one) for one in unit.node.body],
+            "conditions": [] if program.statements[unit.statement].kind == "weak" else condition_infos(unit.node),
+            "choice": is_choice(unit),
+        }
+        for unit in program.units
+    ]
+
+
 def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> JsonValues:
     """Return the atoms of an answer set and all instances of rules that hold in it."""
     atoms = grounded.whole_answer(answer)
+    return {"atoms": sorted(map(str, atoms)), **instance_infos(instances(grounded.parts, atoms))}
+
+
+def instance_infos(symbols: Iterable[clingo.Symbol]) -> JsonValues:
+    """Return the helping atoms of kb.tracing.instrument as JSON values."""
     found: dict[str, list[Any]] = {"trace__on": [], "trace__head": [], "trace__element": []}
-    for symbol in sorted(instances(grounded.parts, atoms)):
+    for symbol in sorted(symbols):
         unit, *rest = symbol.arguments
         entry: list[Any]
         if symbol.name == "trace__on":
@@ -92,12 +102,7 @@ def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> JsonValues:
         else:
             entry = [rest[0].number, rest[1].number, _texts(rest[2]), _literals(rest[3]), _literals(rest[4])]
         found[symbol.name].append([unit.number, *entry])
-    return {
-        "atoms": sorted(map(str, atoms)),
-        "on": found["trace__on"],
-        "heads": found["trace__head"],
-        "elements": found["trace__element"],
-    }
+    return {"on": found["trace__on"], "heads": found["trace__head"], "elements": found["trace__element"]}
 
 
 def _texts(values: clingo.Symbol) -> list[str]:

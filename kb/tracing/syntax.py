@@ -5,13 +5,16 @@ stand in literals without negation, have names of their own, so that an instance
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import clingo
 from clingo.ast import (
     AST,
+    ASTSequence,
     ASTType,
+    BinaryOperator,
     Comparison,
     ComparisonOperator,
     Guard,
@@ -19,6 +22,7 @@ from clingo.ast import (
     Sign,
     SymbolicTerm,
     Transformer,
+    UnaryOperator,
     Variable,
     parse_string,
 )
@@ -35,6 +39,13 @@ SIGNS = {
     ComparisonOperator.GreaterThan: ">",
     ComparisonOperator.GreaterEqual: ">=",
 }
+# clingo's operators as written in programs.
+BINARY_SIGNS = {
+    BinaryOperator.XOr: "^", BinaryOperator.Or: "?", BinaryOperator.And: "&", BinaryOperator.Plus: "+",
+    BinaryOperator.Minus: "-", BinaryOperator.Multiplication: "*", BinaryOperator.Division: "/",
+    BinaryOperator.Modulo: "\\", BinaryOperator.Power: "**",
+}  # fmt: skip
+UNARY_SIGNS = {UnaryOperator.Minus: "-", UnaryOperator.Negation: "~", UnaryOperator.Absolute: "|"}
 FUNCTIONS = ("#count", "#sum", "#sum+", "#min", "#max")  # in the order of clingo's numbers of aggregate functions
 
 
@@ -76,6 +87,42 @@ class ParsedProgram(NamedTuple):
     shown: frozenset[tuple[str, int]]  # the predicates of the answer, likewise; empty when everything is shown
 
 
+_attributes: dict[Any, tuple[Any, list[str]]] = {}  # the keys of the parts of a node, and of all it has, by its type
+
+
+class SyntaxPart:
+    """A part of clingo's syntax tree, read once: clingo's own takes microseconds for each attribute."""
+
+    def __init__(self, node: AST) -> None:
+        self.ast_type, self._node = node.ast_type, node
+        if self.ast_type not in _attributes:
+            _attributes[self.ast_type] = node.child_keys, [key for key in dict(node.items()) if key != "location"]
+        self.child_keys, keys = _attributes[self.ast_type]
+        for key in keys:
+            setattr(self, key, _read(getattr(node, key)))
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the location, which is seldom asked for; raise AttributeError for any other name."""
+        if name != "location":
+            raise AttributeError(name)
+        return self._node.location
+
+    def updated(self, **values: Any) -> "SyntaxPart":
+        """Return the part with other values of some attributes."""
+        found = copy(self)
+        found.__dict__.update(values)
+        return found
+
+
+def _read(value: Any) -> Any:
+    """Return an attribute of clingo's syntax tree: parts and sequences of them are read, too."""
+    if isinstance(value, AST):
+        return SyntaxPart(value)
+    return (
+        [SyntaxPart(one) if isinstance(one, AST) else one for one in value] if isinstance(value, ASTSequence) else value
+    )
+
+
 @lru_cache(maxsize=64)
 def parsed(parts: tuple[ProgramPart, ...]) -> ParsedProgram:
     """Return a program taken apart; the last ones are kept. RuntimeError when clingo cannot parse it."""
@@ -109,7 +156,7 @@ def global_variables_of(node: AST) -> tuple[str, ...]:
         head = [node.head] if node.head.ast_type == ASTType.Literal else _guards(node.head)
         outer = [*head, *node.body]
     for part in outer:
-        for inner in _outer_parts(part):
+        for inner in outer_parts(part):
             found |= dict.fromkeys(variables_in(inner))
     found.pop("_", None)
     return tuple(found)
@@ -177,7 +224,7 @@ def _guards(head: AST) -> list[AST]:
     return [guard.term for guard in (head.left_guard, head.right_guard) if guard is not None]
 
 
-def _outer_parts(part: AST) -> Iterator[AST]:
+def outer_parts(part: Any) -> Iterator[Any]:
     """Yield the parts of a literal in which its global variables stand."""
     if part.ast_type == ASTType.ConditionalLiteral:
         return
@@ -188,21 +235,21 @@ def _outer_parts(part: AST) -> Iterator[AST]:
         yield part
 
 
-def nodes_in(node: AST) -> Iterator[AST]:
+def nodes_in(node: Any) -> Iterator[Any]:
     """Yield a syntax tree and all its parts, each before its own parts, in order."""
     yield node
     for part in parts_of(node):
         yield from nodes_in(part)
 
 
-def parts_of(node: AST) -> Iterator[AST]:
+def parts_of(node: Any) -> Iterator[Any]:
     """Yield the direct parts of a syntax tree, in order."""
     for key in node.child_keys:
         inner = getattr(node, key)
-        yield from [inner] if isinstance(inner, AST) else inner or ()
+        yield from [inner] if isinstance(inner, AST | SyntaxPart) else inner or ()
 
 
-def variables_in(node: AST) -> list[str]:
+def variables_in(node: Any) -> list[str]:
     """Return the names of the variables in a syntax tree, in order."""
     return [part.name for part in nodes_in(node) if part.ast_type == ASTType.Variable]
 

@@ -117,7 +117,7 @@ BAD = {
     "offset(o1, E, N), X = E*E*E*E": "a number beyond 32 bits",
     "X = #sum{2147483647,a; 1,b}": "a number beyond 32 bits (-2147483648 to 2147483647), in #sum",
     "C = #max{D : shape(o1, T, E)}": "nothing says what D can be",
-    "C = #max{D : shape(o1, T, D)} <= f(S)": "nothing says what C can be",
+    "C = #max{D : shape(o1, T, D)} <= f(S)": "nothing says what S can be",
     "X = 5/0": "a division by zero",
     "X = o1+1": "operation undefined: o1 is no number",
     "-object(o1)": "query:1:1-1: error: classical negation is not known here",
@@ -143,6 +143,9 @@ BAD = {
     'object(X). #include "/etc/passwd".': "error",
     "#script (python) import os #end": "syntax error",
     "X = @f()": "operation undefined",
+    "X = o1..5": "operation undefined: o1 is no number",
+    "X > 3, X > 6": "nothing says what X can be",
+    "shape(T, S, _) : object(T)": "nothing says what S can be",
     "object(\u201cx\u201d)": "typographic",
     "object(X) % and\nmore": "no comments",
     "object(X),\n  shpe(X, Y, Z)": "query:2:3-3: error: unknown predicate shpe/3",
@@ -168,6 +171,8 @@ NUMBERS = {
     "offset(o1, 3*X, N)": 400,
     "offset(o1, E, -X), X > 0": 300,
     "X = #sum{2147483647,a; 1,b; -1,c}": 2147483647,
+    "shape(o2, S, C), X = 100/(C-60), S != brick": -5,
+    "3 < X, X < 5": 4,
 }
 
 

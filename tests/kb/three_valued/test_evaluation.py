@@ -3,6 +3,7 @@
 import random
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import clingo
 import pytest
@@ -276,3 +277,25 @@ def test_closed_and_open_predicates(engine: QueryEngine, text: str) -> None:
 def test_the_likeliest_shape_can_be_asked_for(engine: QueryEngine) -> None:
     for text in ("shape(o2, S, C), C = #max{D,T : shape(o2, T, D)}", "shape(o2, S, C), C >= D : shape(o2, T, D)"):
         assert engine.ask([*FACTS, "unseen(r1,40)."], text).rows == (("brick", 60),)
+
+
+RECURSIVE = {
+    "near(X, E) :- offset(X, E, _).\nnear(X, E+100) :- near(X, E), E < 5000.": (
+        "near(o9, 5)",
+        UNSURE,
+        "near(o1, 5050)",
+    ),
+    "tied(X, Y) :- adjacent(X, Y).\ntied(X, Z) :- tied(X, Y), tied(Y, Z).": ("tied(o8, o9)", UNSURE, "node(o1)"),
+    "up(X, C) :- movable(X, C).\nup(X, C+1) :- up(X, C), C < 200.": ("up(o3, 199)", "yes", "up(o1, 200)"),
+    "n(0).\nn(N+1) :- n(N), N < 300.": ("n(301)", NO, "n(300)"),
+}
+
+
+@pytest.mark.parametrize("rules", RECURSIVE)
+def test_rules_that_derive_from_themselves_end(tmp_path: Path, rules: str) -> None:
+    """What may hold of unknown numbers is no endless series of bounds."""
+    asked, answer, certain = RECURSIVE[rules]
+    (file := tmp_path / "rules.lp").write_text(rules)
+    with QueryEngine(seconds=20.0, rules=[str(file)]) as running:
+        assert running.ask([*FACTS, "unseen(r1,40)."], asked).kind == answer
+        assert running.ask([*FACTS, "unseen(r1,40)."], certain).kind == "yes"
