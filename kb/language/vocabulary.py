@@ -293,6 +293,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("shape", 3): _property(word_argument("shape", SHAPE_CLASSES)),
     ("colour", 3): _property(COLOUR_ARGUMENT),
     ("movable", 2): _property(),
+    ("persists", 2): _uncertain(THING_ARGUMENT, open=Openness.NEVER),
     ("adjacent", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(settled=frozenset({"org"}), symmetric=True),
     ("joined", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(symmetric=True),
     ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),

@@ -96,7 +96,7 @@ class Tracker:
             return None
         looked = state.observations[-len(state.looks) :]  # since a map begun anew when lost, the newest alone
         ways = [(look.away[0] - away[0], look.away[1] - away[1]) for look in state.looks]
-        self.state = replace(former, unsteady=former.unsteady or state.unsteady)
+        self.state = replace(former, unsteady=former.unsteady or state.unsteady, removed=state.removed)
 
         def clashes(point: Position) -> int:
             """Return how many fields of all looks contradict the map if the newest was made at a point."""
@@ -335,6 +335,7 @@ class Tracker:
             suspected_squares=state.suspected_squares - change.squares,
             completions=None,
             changed_at={**state.changed_at, **dict.fromkeys(change.squares, change_number)},
+            removed=state.removed + len(change.gone),
         )
 
     def _learn(self, judged: Judgement) -> None:
@@ -393,7 +394,7 @@ def _begun(state: TrackerState, made: Iterable[Observation], former: TrackerStat
     """Return a tracker with an empty map at the believed place; `made`: the observations whose places are kept."""
     been = (*state.been, *(observation.place for observation in made))
     begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-    return Tracker(replace(begun, former=former, unsteady=unsteady))
+    return Tracker(replace(begun, former=former, unsteady=unsteady, removed=state.removed))
 
 
 def _before_contradictions(state: TrackerState) -> TrackerState | None:

@@ -168,6 +168,15 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("tried", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("movable", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
     },
+    "persistence": {
+        ("thing", 1): (NODE_ARGUMENT,),
+        **{(name, 1): (AMOUNT_ARGUMENT,) for name in ("removed", "checked", "since_change")},
+        ("out_of_sight", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("by_count", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("persists", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("watched", 1): (NODE_ARGUMENT,),
+        ("looked_at_again", 1): (NODE_ARGUMENT,),
+    },
     "rooms": {
         ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("door", 2): (NECK_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -347,7 +356,7 @@ WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - M
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {
-        "movable": frozenset({("shape", 3), ("colour", 3)}),
+        **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
         "reconciliation": WORLD_PREDICATES,
         "task": WORLD_PREDICATES,
@@ -373,6 +382,9 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("length", 2),
         ("unmoved", 2),
         ("tried", 2),
+        ("out_of_sight", 2),
+        ("by_count", 2),
+        *((name, 1) for name in ("removed", "checked", "since_change")),
     }
     | {("described", 2), ("place", 3)}
     | {("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3)}

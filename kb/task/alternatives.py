@@ -3,11 +3,12 @@
 Geometry measures; the encoding makes chances of it, by what was counted.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
 from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.language.atoms import atom_parts
 from utak.kb.mapping.occupancy import OPEN
 from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
@@ -27,6 +28,21 @@ def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconc
     facts = [*place_facts(task, model, rooms, reconciled)]
     facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
     return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
+
+
+def may_be(facts: Iterable[str]) -> dict[str, dict[str, int]]:
+    """Return, by parameter of the task that means nothing seen, the places where it may be with percent, of facts."""
+    found: dict[str, dict[str, int]] = {}
+    for fact in facts:
+        name, parts = atom_parts(fact)
+        if name == "may_be":
+            found.setdefault(parts[0], {})[parts[1]] = int(parts[2])
+    return found
+
+
+def is_unseen_place(place: str) -> bool:
+    """Return whether a place where a thing may be is the unseen part of a room, or what lies behind a door."""
+    return place[0] in "rd"
 
 
 def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> Iterator[str]:

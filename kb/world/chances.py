@@ -89,12 +89,20 @@ class Chances:
         if not shares:
             return []
         if exact and self.is_sure and is_clear and len(shares) == 1 and all(map(self._is_settled, shares)):
-            return [(room, 100) for room in shares]
+            return [(room, self._persisting(100, node)) for room in shares]
         whole, first = sum(shares.values()), min(shares, key=lambda room: (-shares[room], room))
         sure = self._rate("in_robot" if node is None else "in_thing", measured(shares[first] / whole))
         left = whole - shares[first]
         found = {room: int((100 - sure) * share / left) for room, share in shares.items() if room != first}
-        return sorted((room, share) for room, share in (*found.items(), (first, sure)) if share > 0)
+        now = ((room, self._persisting(share, node)) for room, share in (*found.items(), (first, sure)))
+        return sorted((room, share) for room, share in now if share > 0)
+
+    @staticmethod
+    def _persisting(percent: int, *nodes: Node | None) -> int:
+        """Return the percent of what was so when things were last in sight, as far as they still lie there."""
+        for node in nodes:
+            percent = percent if node is None else percent * node.persists // 100
+        return percent
 
     def _is_settled(self, room: int) -> bool:
         """Return whether no door can part a room: none has it on both sides, and all in it and about it is settled."""
@@ -168,7 +176,8 @@ class Chances:
         if chance > 0:
             between = "robot" if name == ROOT_NODE else "verge" if other == VERGE_NODE else "things"
             case = f"adjacent_{between}{'' if self.is_sure else '_unsure'}"
-            yield name, other, 100 if certain else self._rate(case, measured(chance))
+            share = 100 if certain else self._rate(case, measured(chance))
+            yield name, other, self._persisting(share, self.model.object(name), self.model.object(other))
 
     def _body(self, node: Node) -> _Body:
         """Return where an object may be: its squares, and open ones beside them."""

@@ -63,6 +63,8 @@ class Node:
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
     movable: int = 100  # Percent of belief that it can be moved, if it is an object, by kb/asp/movable.lp
     felt_first: bool = False  # Whether it is felt before it is moved: it may be a piece of wall (kb/asp/movable.lp)
+    persists: int = 100  # Percent of belief that it still lies where it lay, by kb/asp/persistence.lp
+    looked_at_again: bool = False  # Whether it is looked at again before a task is done that is about it, by the same
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive

@@ -91,19 +91,27 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
     return Subgoal(SubgoalKind.INSPECT, *look)
 
 
-def look_since_contradiction(node: Node, situation: Situation) -> Subgoal | None:
-    """Return a look from close by at a moved object, if none was taken since an impression contradicted the map."""
-    # What was seen before may lie on squares of a map that has changed since.
-    model = situation.model
-    if not node.moved or model.looked_since == model.looked_from:
+def look_again(node: Node, situation: Situation) -> Subgoal | None:
+    """Return a look at an object that may lie elsewhere, as others or contradictions have it; None for no need."""
+    model, squares = situation.model, situation.model.mask(node.patch)
+    if node.looked_at_again:
+        look = frontiers.viewpoint_of(
+            situation.cost_maps, squares, f"others may have moved {node.name} since it was seen"
+        )
+    elif node.moved and not _is_looked_at(squares, model):
+        look = frontiers.viewpoint_of(
+            situation.cost_maps, squares, f"{node.name} was not seen closely since looks differed"
+        )
+    else:
         return None
-    squares = model.mask(node.patch)
-    if (dilate(squares, frontiers.FOVEA_RANGE) & model.squares(model.looked_since)).any():
-        return None
-    look = frontiers.viewpoint_of(
-        situation.cost_maps, squares, f"{node.name} was not seen closely since looks differed"
-    )
     return Subgoal(SubgoalKind.INSPECT, *look) if len(look.squares) else None
+
+
+def _is_looked_at(squares: Bools, model: WorldModel) -> bool:
+    """Return whether squares were looked at from close by since an impression contradicted the map, if any did."""
+    # What was seen before may lie on squares of a map that has changed since.
+    near: Bools = dilate(squares, frontiers.FOVEA_RANGE) & model.squares(model.looked_since)
+    return model.looked_since == model.looked_from or bool(near.any())
 
 
 def robot_square(model: WorldModel) -> Bools:

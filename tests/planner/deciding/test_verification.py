@@ -25,9 +25,9 @@ from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.verification import (
     Verifier,
     check_elsewhere,
+    look_again,
     look_at_contradiction,
     look_before_grasp,
-    look_since_contradiction,
     unseen_beyond_door,
 )
 from utak.planner.sights.frontiers import FOVEA_RANGE
@@ -129,10 +129,19 @@ def test_what_was_moved_is_seen_from_close_by_again_after_a_contradiction() -> N
     moved = replace(model, objects=(replace(node, moved=True),), looked_from=frozenset({here, far}))
     for looked, again in (({here, far}, False), ({here}, False), ({far}, True), (set(), True)):
         situation = situation_of(replace(moved, looked_since=frozenset(looked)))
-        found = look_since_contradiction(situation.model.objects[0], situation)
+        found = look_again(situation.model.objects[0], situation)
         assert (found is not None) == again, looked
     unmoved = situation_of(replace(model, looked_from=frozenset({here})))
-    assert look_since_contradiction(node, unmoved) is None
+    assert look_again(node, unmoved) is None
+
+
+@pytest.mark.parametrize("again", [False, True])
+def test_what_others_may_have_moved_is_looked_at_again(again: bool) -> None:
+    model = known_model(BESIDE_A_THING)
+    node = replace(model.objects[0], looked_at_again=again)
+    found = look_again(node, situation_of(replace(model, objects=(node,))))
+    assert (found is not None) == again
+    assert found is None or f"others may have moved {node.name}" in found.what
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
