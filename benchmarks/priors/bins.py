@@ -51,7 +51,7 @@ LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
 OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 26, 101)), strict=True))
 # Of a place where a thing may be (kb/asp/chances.lp), by its case: bins of its measure.
 WHEREABOUT_MEASURE = {
-    "likely": bins(0, 1, 10),
+    "likely": bins(0, 10, 20, 50),
     "other": WHOLE,
     "open": bins(0, 5, 15, 30),
     "closed": WHOLE,

@@ -29,6 +29,7 @@ from utak.kb.language.vocabulary import (
     SHAPE_CLASSES,
     TASK_PARAMETER_ARGUMENT,
     THING_ARGUMENT,
+    WHEREABOUTS_ARGUMENT,
     Signature,
 )
 
@@ -51,6 +52,7 @@ NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
 CLAIMED_RELATIONS = ("in", "beside", "joins")  # what claims relate two parameters by
+PLACE_CASE = word_argument("case", ("likely", "other", "open", "closed", "door", "verge"))  # where a thing may be
 PROPERTY_ARGUMENT = word_argument("property", PROPERTIES)
 RELATION_ARGUMENT = word_argument("relation", CLAIMED_RELATIONS)
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
@@ -187,6 +189,17 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("convex", 3): (CONVEX_CORNER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
         ("excluded", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
+    },
+    "chances": {
+        ("unbound", 1): (TASK_PARAMETER_ARGUMENT,),
+        ("place", 4): (TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, PLACE_CASE, AMOUNT_ARGUMENT),
+        ("claimed", 3): (TASK_PARAMETER_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("next", 1): (WHEREABOUTS_ARGUMENT,),
+        ("touch", 4): (THING_ARGUMENT, THING_ARGUMENT, word_argument("felt", ("same", "unfelt")), CONFIDENCE_ARGUMENT),
+        ("whole", 1): (THING_ARGUMENT,),
+        ("supports", 3): (TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, AMOUNT_ARGUMENT),
+        ("may_be", 3): (TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("joined", 3): (THING_ARGUMENT, THING_ARGUMENT, CONFIDENCE_ARGUMENT),
     },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -346,6 +359,9 @@ PLAN_FACTS = frozenset(
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "movable": frozenset({("moved", 1), ("kind", 3)}),
     "taken": frozenset({("kind", 3), ("extent", 2), ("touched", 2), ("longest", 1)}),
+    "chances": frozenset(USER_RULE_INTERFACES["chances"]) - {("supports", 3)},
+    "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
+    - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
@@ -358,7 +374,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        "reconciliation": WORLD_PREDICATES,
+        **dict.fromkeys(("reconciliation", "chances"), WORLD_PREDICATES),
         "task": WORLD_PREDICATES,
         "agenda": WORLD_PREDICATES,
     }.items()
@@ -382,9 +398,6 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("length", 2),
         ("unmoved", 2),
         ("tried", 2),
-        ("out_of_sight", 2),
-        ("by_count", 2),
-        *((name, 1) for name in ("removed", "checked", "since_change")),
     }
     | {("described", 2), ("place", 3)}
     | {("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3)}

@@ -4,6 +4,7 @@ Geometry measures; the encoding makes chances of it, by what was counted.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from utak.kb.task.binding import Reconciliation
 from utak.kb.task.described import claim_facts
 from utak.kb.task.pieces import touching_pieces
 from utak.kb.task.task import Task
+from utak.kb.world.facts import Places, facts_for_rules
 from utak.kb.world.model import VERGE_NODE, Node, WorldModel
 from utak.kb.world.place_names import WAKING_ROOM
 from utak.kb.world.rooms import NO_ROOM, Rooms
@@ -23,11 +25,17 @@ from utak.kb.world.rooms import NO_ROOM, Rooms
 CHANCES = KB_ENCODINGS / "chances.lp"
 
 
-def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
+def alternatives(
+    task: Task, model: WorldModel, places: Places, reconciled: Reconciliation, rules: tuple[Path, ...] = ()
+) -> tuple[str, ...]:
     """Return may_be/3 and joined/3 as facts without full stops."""
-    facts = [*place_facts(task, model, rooms, reconciled)]
+    facts = [*place_facts(task, model, places.rooms, reconciled)]
     facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
-    return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
+    if not facts:
+        return ()
+    return tuple(
+        map(str, solve([CHANCES, *rules], [*facts, *facts_for_rules(CHANCES.stem, rules, model, places)]) or ())
+    )
 
 
 def may_be(facts: Iterable[str]) -> dict[str, dict[str, int]]:
@@ -38,11 +46,6 @@ def may_be(facts: Iterable[str]) -> dict[str, dict[str, int]]:
         if name == "may_be":
             found.setdefault(parts[0], {})[parts[1]] = int(parts[2])
     return found
-
-
-def is_unseen_place(place: str) -> bool:
-    """Return whether a place where a thing may be is the unseen part of a room, or what lies behind a door."""
-    return place[0] in "rd"
 
 
 def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> Iterator[str]:
@@ -60,21 +63,18 @@ def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconci
         yield from (f"place({x},{place})" for place in places)
         for node in free:
             case = "likely" if (x, node.name) in may_turn_out else "other"
-            yield f"place({x},{node.name},{case},{_likeness(node, x, task)})"
+            yield f"place({x},{node.name},{case},{_likeness(node, x, task, model)})"
     yield from _claimed_rooms(unbound, task, rooms, bound)
 
 
-def _likeness(node: Node, parameter: str, task: Task) -> int:
-    """Return with how many percent a node is an object as the task claims, as far as it was seen and felt."""
-    share = node.confidence / 100
-    for claim in task.claims:
-        name, *values = (str(part) for part in (claim.fact.name, *claim.fact.args))
-        if values[0] != parameter or name not in ("shape", "colour"):
-            continue
-        likely = node.shape if name == "shape" else {node.colour or values[1]: 100}  # unfelt: any colour
-        held = likely.get(values[1], 0)
-        share *= max(held, 100 - claim.confidence) / 100
-    return round(100 * share)
+def _likeness(node: Node, parameter: str, task: Task, model: WorldModel) -> int:
+    """Return with how many percent map completions show that a node has the shape that the task claims."""
+    # Where it claims none: with how many percent the node is an object.
+    claimed = (claim.fact for claim in task.claims if claim.fact.name == "shape")
+    shapes = sorted(str(fact.args[1]) for fact in claimed if str(fact.args[0]) == parameter)
+    if not shapes:
+        return node.confidence
+    return round(100 * float(model.likely(shapes[0])[model.mask(node.patch)].max(initial=0.0)))
 
 
 def _unseen_places(model: WorldModel, rooms: Rooms) -> Iterator[str]:

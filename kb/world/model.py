@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from utak.geometry.kernels.arrays import XY, Bools, Labels, Square
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Square
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
 from utak.kb.mapping.occupancy import OPEN, MapView
@@ -133,6 +133,18 @@ class WorldModel:
             rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
             mask &= np.hypot(columns + 0.5 - x, rows + 0.5 - y) * self.spread <= MAX_SQUARE_SHIFT
         return mask
+
+    def likely(self, shape: str) -> Floats:
+        """Return the probability that each square belongs to an isolated object of a class: (rows, columns) float."""
+        if shape not in self._likely:
+            likely = self.imagined.likely(shape)
+            self._likely[shape] = likely if likely.size else np.zeros(self.labels.shape)  # none were drawn
+        return self._likely[shape]
+
+    @cached_property
+    def _likely(self) -> dict[str, Floats]:
+        """The same by class, for those that were asked for."""
+        return {}
 
     @cached_property
     def told(self) -> Bools:

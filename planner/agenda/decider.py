@@ -250,5 +250,5 @@ class Decider:
             self._unmoved |= unmoved
             return self._reconcile(cost_maps)
         self.bound = reconciled.binding
-        self.alternatives = alternatives(self.task, model, self.rooms, reconciled)
+        self.alternatives = alternatives(self.task, model, places, reconciled, rules)
         return reconciled

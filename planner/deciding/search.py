@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from utak.geometry.kernels.arrays import Floats
-from utak.kb.task.alternatives import is_unseen_place
+from utak.geometry.kernels.arrays import Bools, Floats
 from utak.kb.task.binding import Reconciliation
 from utak.kb.world.rooms import rooms_of
 from utak.planner.goals.robot_goals import Destination
@@ -41,9 +40,10 @@ def subgoals_towards(
     subgoals = [Subgoal(SubgoalKind.EXPLORE, *look) for d in missing for look in d.viewpoints]
     if any(_is_surely_reached(subgoal, cost_maps) for subgoal in subgoals):
         return [*subgoals, *things]
+    unseen = _unseen_share(situation, reconciled)
     likely = _object_heat(situation, reconciled)
-    places = [] if likely is None else _likely_places(cost_maps, likely, to)
-    return [*subgoals, *things, *places, *_looks_at_the_unseen(cost_maps, _unseen_share(situation, reconciled), to)]
+    places = [] if likely is None else _likely_places(cost_maps, unseen * likely, to)
+    return [*subgoals, *things, *places, *_looks_at_the_unseen(cost_maps, unseen, to)]
 
 
 def contact_subgoals(situation: Situation) -> list[Subgoal]:
@@ -88,13 +88,11 @@ def _doubtful_objects(situation: Situation, reconciled: Reconciliation, to: Appr
 
 
 def _unseen_share(situation: Situation, reconciled: Reconciliation) -> float:
-    """Return the probability, 0 to 1, that what is looked for is none of the objects seen, nor taken for verge."""
-    shares = [
-        sum(percent for place, percent in situation.may_be[x].items() if is_unseen_place(place)) / 100
-        for x in reconciled.hypothesised
-        if x in situation.may_be
-    ]
-    return max(shares, default=1.0)
+    """Return the probability, 0 to 1, that what is looked for is none of the objects that were seen."""
+    objects = {node.name for node in situation.model.objects}
+    may_be = (situation.may_be[x] for x in reconciled.hypothesised if x in situation.may_be)
+    shares = [sum(percent for place, percent in places.items() if place not in objects) for places in may_be]
+    return max(shares, default=100) / 100
 
 
 def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Subgoal]:
@@ -131,7 +129,7 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
 
 
 def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | None:
-    """Return the probability that a square belongs to the shape looked for; None when no shape is told."""
+    """Return the chance that a square belongs to the shape looked for, 0 on objects seen; None when none is told."""
     wanted = sorted(
         str(claim.fact.args[1])
         for claim in situation.task.claims
@@ -139,7 +137,11 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
     )
     if not wanted:
         return None
-    return situation.model.imagined.likely(wanted[0])
+    model = situation.model
+    elsewhere: Bools = np.ones(model.labels.shape, np.bool_)
+    for node in model.objects:
+        elsewhere &= ~model.mask(node.patch)
+    return np.where(elsewhere, model.likely(wanted[0]), 0.0)
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
