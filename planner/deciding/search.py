@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from utak.geometry.kernels.arrays import Bools, Floats
+from utak.geometry.kernels.arrays import Floats
 from utak.kb.task.binding import Reconciliation
 from utak.kb.world.rooms import rooms_of
 from utak.planner.goals.robot_goals import Destination
@@ -41,8 +41,8 @@ def subgoals_towards(
     if any(_is_surely_reached(subgoal, cost_maps) for subgoal in subgoals):
         return [*subgoals, *things]
     unseen = _unseen_share(situation, reconciled)
-    likely = _object_heat(situation, reconciled)
-    places = [] if likely is None else _likely_places(cost_maps, unseen * likely, to)
+    likely = _object_heat(situation, reconciled, unseen)
+    places = [] if likely is None else _likely_places(cost_maps, likely, to)
     return [*subgoals, *things, *places, *_looks_at_the_unseen(cost_maps, unseen, to)]
 
 
@@ -128,20 +128,20 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
     return [*explored, *settled, *passages]
 
 
-def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | None:
-    """Return the chance that a square belongs to the shape looked for, 0 on objects seen; None when none is told."""
+def _object_heat(situation: Situation, reconciled: Reconciliation, unseen: float) -> Floats | None:
+    """Return the probability that a square belongs to the shape looked for; None when no shape is told."""
     wanted = sorted(
-        str(claim.fact.args[1])
+        (str(claim.fact.args[1]), str(claim.fact.args[0]))
         for claim in situation.task.claims
         if claim.fact.name == "shape" and str(claim.fact.args[0]) in reconciled.hypothesised
     )
     if not wanted:
         return None
-    model = situation.model
-    elsewhere: Bools = np.ones(model.labels.shape, np.bool_)
+    (shape, x), model = wanted[0], situation.model
+    likely = unseen * model.likely(shape)
     for node in model.objects:
-        elsewhere &= ~model.mask(node.patch)
-    return np.where(elsewhere, model.likely(wanted[0]), 0.0)
+        likely[model.mask(node.patch)] = situation.may_be.get(x, {}).get(node.name, 0) / 100
+    return likely
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
