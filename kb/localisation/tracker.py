@@ -192,7 +192,8 @@ class Tracker:
         self._count_confirmations(explanation)
         self._note_motion(explanation)
         if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
-            squares = explanation.contact_squares or {entered_square(explanation.place, walk.predicted)}
+            entered = entered_square(explanation.place, walk.predicted)
+            squares = explanation.contact_squares or {square for square in [entered] if square is not None}
             self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
         return self._integrate(explanation, ranges)
 
