@@ -154,6 +154,13 @@ def test_a_square_that_looks_like_a_brick_is_measured(tmp_path: Path) -> None:
     assert max(30 - east, 20 - north) <= 1.0
 
 
+@pytest.mark.parametrize("goal", few(["at(utak, x).", "circled(utak, x)."], ["at(utak, x)."]))
+def test_a_square_that_looks_like_a_brick_is_measured_for_a_goal_of_the_robot_itself(goal: str, tmp_path: Path) -> None:
+    between = f'object(t, g, "{box(8.5, 6, 11.5, 9)}").'
+    done = run(scene(tmp_path, room(between), "object(x). shape(x, square).", goal))
+    assert done.result.verdict == "done", done.result.reason
+
+
 @pytest.mark.long
 def test_a_brick_that_is_measured_stays_one(tmp_path: Path) -> None:
     brick = f'object(t, g, "{box(8, 6, 12, 9)}").'
