@@ -138,7 +138,7 @@ class Activities:
         return doing[activity.kind]()
 
     def _go(self, turn: StageTurn) -> Decision:
-        """Return the next command towards where the robot shall be, or to tell what it shall be beside; or the verdict."""
+        """Return the next command to where the robot shall be, or to tell what that is about; or the verdict."""
         meant = {str(term) for goal in turn.stage.own for term in goal.args[1:]}
         return self._transporter.measured(meant, self._own.go(turn, self.errands.intention), turn)
 
