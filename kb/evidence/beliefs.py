@@ -107,7 +107,7 @@ class FactExplainer:
             return self._corner_reasons(arguments, step)
         if name == "movable":
             return self._movable_reasons(node, arguments[1], step)
-        if name in ("may_be", "joined"):
+        if name in ("may_be", "joined", "hidden", "loc"):
             found = self.decision("chances", fact, step, oldest=step)
             return [found] if found else []
         if name == "held":

@@ -295,6 +295,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("movable", 2): _property(),
     ("adjacent", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(settled=frozenset({"org"}), symmetric=True),
     ("joined", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(symmetric=True),
+    ("loc", 3): _uncertain(LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER),
     ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),
     ("door", 2): _uncertain(DOOR_ARGUMENT),
     ("connects", 4): _uncertain(DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT),
@@ -306,6 +307,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
         word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER
     ),
     ("region", 3): _uncertain(MAP_REGION_ARGUMENT, word_argument("state", ("zero", "nonzero"))),
+    ("hidden", 3): _uncertain(MAP_REGION_ARGUMENT, MAP_REGION_ARGUMENT, open=Openness.NEVER),
     ("part_of", 2): BeliefPredicate((MAP_PART_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
     ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("junction", 4): BeliefPredicate(

@@ -23,6 +23,7 @@ from utak.kb.language.vocabulary import (
     CONFIDENCE_ARGUMENT,
     KIND_ARGUMENT,
     LENGTH_ARGUMENT,
+    MAP_REGION_ARGUMENT,
     PLAN_PREDICATES,
     RESUMED_STEPS,
     SETTLING_STEPS,
@@ -87,6 +88,8 @@ FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
 EXCLUSIVE_QUESTIONS: Forms = {  # whose answers exclude each other
     **dict.fromkeys(("kind", "shape", "room"), (THING_ARGUMENT,)),
     "place": (TASK_PARAMETER_ARGUMENT,),
+    "passage": (MAP_REGION_ARGUMENT,),
+    "loc": (),
 }
 QUESTION_ARGUMENT = _compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
@@ -135,7 +138,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
         ("cut", 1): (REGION_ARGUMENT,),
         ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("hidden_passage", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
         ("counted_solid", 4): (CASE_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
         ("counted_object", 6): (CASE_ARGUMENT, *(AMOUNT_ARGUMENT,) * 5),
     },
@@ -340,7 +342,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
-MADE_LAST = frozenset({("may_be", 3), ("may_be", 2), ("joined", 3), ("joined", 2)})
+MADE_LAST = frozenset((name, arity) for name in ("may_be", "joined", "hidden", "loc") for arity in (2, 3))
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
 # nothing but the world model bind the task plan; elsewhere they would leave no answer.
 WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - MADE_LAST

@@ -98,6 +98,18 @@ def test_why_a_thing_may_be_somewhere_is_told_and_why_not() -> None:
     assert "names no object" in questions.why_not("may_be(y,r1,C)", 0).because
 
 
+def test_the_robot_stands_in_one_square() -> None:
+    places = stated("go_to_square_unseen", "loc")
+    assert all(sum(there.values()) <= 100 for there in places)
+    assert places[0] == {("0", "0"): 100}
+    first = episode("go_to_square_unseen")[0].world
+    assert str(first.query("loc(0, 0)")) == "yes"
+    assert str(first.query("possible(loc(0, 100))")) == "no"
+    reason = asked("go_to_square_unseen").why("loc(0,0,100)", 0)
+    assert "chances.lp" in str(reason)
+    assert "nothing speaks for that square" in asked("go_to_square_unseen").why_not("loc(0,100,C)", 0).because
+
+
 @pytest.mark.long
 def test_the_legs_of_an_l_are_one_thing_for_certain_once_they_moved_together() -> None:
     joined = stated("push_l_next_room", "joined")
