@@ -15,6 +15,7 @@ from benchmarks.harness.beliefs import TableFrame
 from utak.geometry.kernels.arrays import Square
 from utak.kb.objects.parts import parts_of
 from utak.kb.task.apart import NO_PART, floor_parts
+from utak.kb.task.stretches import stretches
 from utak.kb.task.task import SHAPE_SUBCLASSES, Task
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.kb.world.rooms import Rooms
@@ -113,6 +114,13 @@ class TrueAlternatives(NamedTuple):
         quarters = round((self.truth.heading - standing.frame.angle) / 90) % 4
         frame = TableFrame(quarters, *(math.floor(v) for v in self.truth.woke))
         return frame.square(math.floor(x), math.floor(y)) in self.truth.robot_squares
+
+    def is_plug(self, name: str) -> bool:
+        """Return whether things cover most of a stretch of what bounds the floor."""
+        mask = next(stretch.mask for stretch in stretches(self.model) if stretch.name == name)
+        squares, verge = self._squares(mask).keys(), self.truth.about(VERGE)
+        things = {square for thing in self.truth.things for square in self.truth.about(thing)} - verge
+        return 2 * len(squares & things) > len(squares)
 
     def led_to(self, apart: str) -> str:
         """Return the part of the floor to which a way over the true floor leads first from another one."""

@@ -29,6 +29,7 @@ from benchmarks.priors.count import (
     counted_pieces,
     counted_places,
     counted_squares,
+    counted_stretches,
     counted_whereabouts,
 )
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, fits_seen, places_seen, regions_seen
@@ -39,6 +40,7 @@ from benchmarks.priors.whereabouts import (
     joints_seen,
     pieces_seen,
     squares_seen,
+    stretches_seen,
     whereabouts_seen,
 )
 from benchmarks.priors.written import places_text, text
@@ -65,13 +67,14 @@ class WhereaboutsMoment(NamedTuple):
     places: tuple[WhereaboutSeen, ...]
     pieces: tuple[PieceSeen, ...]
     joints: tuple[MeasuredSeen, ...]
+    stretches: tuple[MeasuredSeen, ...]
     squares: tuple[MeasuredSeen, ...]
 
 
 def whereabouts_noted(look: LookedAt) -> WhereaboutsMoment:
     """Return what is counted of a moment of what may be besides what was seen."""
     return WhereaboutsMoment(
-        *(tuple(seen(look)) for seen in (whereabouts_seen, pieces_seen, joints_seen, squares_seen))
+        *(tuple(seen(look)) for seen in (whereabouts_seen, pieces_seen, joints_seen, stretches_seen, squares_seen))
     )
 
 
@@ -131,21 +134,23 @@ def written(moments: Sequence[CountedMoment], command: str, worlds: int) -> str:
 
 def whereabouts_written(moments: Sequence[WhereaboutsMoment], command: str, worlds: int) -> str:
     """Return the file of priors of what may be besides what was seen that some moments give."""
-    places, pieces, joints, squares = (list(chain.from_iterable(seen)) for seen in zip(*moments, strict=True))
+    places, pieces, joints, stretches, squares = (
+        list(chain.from_iterable(seen)) for seen in zip(*moments, strict=True)
+    )
     counts = (
         f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} places, {len(pieces)} pairs of pieces, "
-        f"{len(joints)} parts of floors, {len(squares)} squares"
+        f"{len(joints)} parts of floors, {len(stretches)} stretches, {len(squares)} squares"
     )
     counted = [
         *(*counted_whereabouts(places), *counted_pieces(pieces)),
-        *(*counted_joints(joints), *counted_squares(squares)),
+        *(*counted_joints(joints), *counted_stretches(stretches), *counted_squares(squares)),
     ]
     return text(counted, None, [command, counts], "chances.lp")
 
 
 def _read_whereabouts(line: str) -> WhereaboutsMoment:
     """Return a moment of what may be besides what was seen from its line of JSON."""
-    kinds = (WhereaboutSeen, PieceSeen, MeasuredSeen, MeasuredSeen)
+    kinds = (WhereaboutSeen, PieceSeen, *(MeasuredSeen,) * 3)
     found = zip(kinds, json.loads(line), strict=True)
     return WhereaboutsMoment(*(tuple(kind(*one) for one in seen) for kind, seen in found))
 

@@ -19,6 +19,7 @@ from benchmarks.priors.bins import (
     OPENNESS,
     PASSAGE,
     PLACES,
+    PLUG,
     STANDING,
     WHEREABOUT_MEASURE,
     WHOLE,
@@ -116,6 +117,11 @@ def counted_whereabouts(places: Iterable[WhereaboutSeen]) -> Iterator[Counted]:
 def counted_joints(joints: Iterable[MeasuredSeen]) -> Iterator[Counted]:
     """Yield how many parts of the floor were those to which unseen floor led first from another one, by case."""
     return _counted_by_case("counted_passage", PASSAGE, joints)
+
+
+def counted_stretches(stretches: Iterable[MeasuredSeen]) -> Iterator[Counted]:
+    """Yield how many stretches of what bounds the floor were things, by case and thickness."""
+    return _counted_by_case("counted_plug", PLUG, stretches)
 
 
 def counted_squares(squares: Iterable[MeasuredSeen]) -> Iterator[Counted]:

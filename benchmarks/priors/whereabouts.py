@@ -75,6 +75,12 @@ def joints_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
     yield from (MeasuredSeen(case, int(measure), true[apart] == other) for apart, other, case, measure in between)
 
 
+def stretches_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
+    """Yield the stretches of what bounds the floor that were never felt."""
+    for stretch, case, thickness in _of(look, "unfelt"):
+        yield MeasuredSeen(case, int(thickness), _alternatives(look).is_plug(stretch))
+
+
 def squares_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
     """Yield the likeliest square in which the robot may stand, where that is not sure."""
     stands = [(int(share), int(east), int(north), case) for east, north, case, share in _of(look, "stands")]

@@ -50,6 +50,11 @@ WORDS = {
         "Of 1000 parts of the floor of case K with a measure of L to U, W were those to which unseen floor led first.",
         "of 1000 parts of the floor of case {K} with a measure of {L} to {U}, {W} were those to which unseen floor led",
     ),
+    "counted_plug": (
+        "K, L, U, W",
+        "Of 1000 stretches of what bounds the floor of case K (slim or broad), L to U squares thick, W were things.",
+        "of 1000 stretches of what bounds the floor of case {K}, {L} to {U} squares thick, {W} were things",
+    ),
     "counted_square": (
         "K, L, U, W",
         "Of 1000 likeliest squares of case K with L to U thousandths of the likelihood, W were that of the robot.",

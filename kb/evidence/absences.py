@@ -203,6 +203,8 @@ class AbsenceExplainer:
             because = "nothing speaks for that square: these are believed" if instead else "it is lost"
         elif name == "hidden" and not instead:
             because = f"{thing} is no part of the floor that no seen floor joins with that of the robot"
+        elif name in ("plug", "stretch") and not instead:
+            because = f"no stretch {thing} was measured: no wall there was left unfelt with floor on both sides"
         elif name == "joined" and not instead:
             because = "no border that they have in common was measured, or they were felt in different colours"
         elif name in ("door", "connects", "width") and not instead:

@@ -200,6 +200,8 @@ def _chance_reasons(
         return [squares_reason(record, step, node) for node in nodes]
     if name == "between":
         return [squares_reason(record, step, FLOOR_NODE)]
+    if name == "unfelt":
+        return [squares_reason(record, step, VERGE_NODE)]
     if name == "stands":
         return [command_reason(record.steps[step])]
     place = arguments[1] if name == "place" else arguments[0]

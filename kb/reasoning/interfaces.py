@@ -342,7 +342,10 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
-MADE_LAST = frozenset((name, arity) for name in ("may_be", "joined", "hidden", "loc") for arity in (2, 3))
+MADE_LAST = frozenset(
+    {*((name, arity) for name in ("may_be", "joined", "hidden", "loc") for arity in (2, 3))}
+    | {("plug", 1), ("plug", 2), ("stretch", 5)}
+)
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
 # nothing but the world model bind the task plan; elsewhere they would leave no answer.
 WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - MADE_LAST

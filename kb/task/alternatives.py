@@ -16,6 +16,7 @@ from utak.kb.task.apart import joints
 from utak.kb.task.binding import Reconciliation
 from utak.kb.task.described import claim_facts
 from utak.kb.task.pieces import touching_pieces
+from utak.kb.task.stretches import stretches
 from utak.kb.task.task import Task
 from utak.kb.world.model import VERGE_NODE, Node, WorldModel, hundredths
 from utak.kb.world.place_names import WAKING_ROOM
@@ -25,12 +26,15 @@ CHANCES = KB_ENCODINGS / "chances.lp"
 
 
 def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
-    """Return may_be/3, joined/3, hidden/3 and loc/3 as facts without full stops."""
+    """Return may_be/3, joined/3, hidden/3, plug/2, stretch/5 and loc/3 as facts without full stops."""
     facts = [*place_facts(task, model, rooms, reconciled)]
     facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
     facts += [joint.fact for joint in joints(model)]
+    unfelt = stretches(model)
+    facts += [stretch.fact for stretch in unfelt]
     facts += standing_facts(model)
-    return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
+    found = [str(atom) for atom in solve([CHANCES], facts) or ()] if facts else []
+    return (*found, *(stretch.rectangle(model) for stretch in unfelt))
 
 
 def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> Iterator[str]:

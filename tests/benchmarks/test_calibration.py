@@ -130,6 +130,21 @@ def test_where_the_robot_stands_is_compared_from_where_it_woke() -> None:
     assert verdicts(found._replace(alternatives=found.alternatives._replace(model=anew))) == {}
 
 
+def test_a_stretch_of_wall_is_a_thing_where_one_covers_most_of_it() -> None:
+    """Between two strips of floor lie a thing, three squares wide and high, and then wall that is one square high."""
+    space = np.zeros((16, 20), np.bool_)
+    space[7, 3:9] = space[2, 3:6] = space[5, 6:9] = True
+    view = SimpleNamespace(west=0, south=0, seen=np.ones_like(space))
+    model = SimpleNamespace(
+        **{**vars(MODEL), "view": view}, space=space, objects=(), felt={}, squares=lambda _: np.zeros_like(space)
+    )
+    facts = ("plug(w1,30)", "plug(w2,20)")
+    found = moment(*facts)
+    assert found.alternatives is not None
+    compared = found._replace(alternatives=found.alternatives._replace(model=model))
+    assert verdicts(compared) == {"plug(w1,30)": True, "plug(w2,20)": False}
+
+
 def test_what_joins_parts_of_the_floor_is_compared_with_the_true_floor() -> None:
     """Of three parts of one room, in a row from west to east, the outer ones lead to the middle one first."""
     labels, occupied = np.zeros((16, 20), np.int32), SimpleNamespace(name="part4", occupied=True)
