@@ -48,7 +48,7 @@ def stretches(model: WorldModel) -> list[Stretch]:
         wall &= ~model.mask(node.patch)
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     found = [*_across(wall, model.space)]
-    found += [(mask.T, *sizes) for mask, *sizes in _across(wall.T, model.space.T)]
+    found += [(mask.T, wide, thick) for mask, wide, thick in _across(wall.T, model.space.T)]
     unfelt = sorted((one for one in found if not (one[0] & felt).any()), key=lambda one: int(one[0].argmax()))
     return [Stretch(f"w{number}", *one) for number, one in enumerate(unfelt, 1)]
 
