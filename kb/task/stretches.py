@@ -66,7 +66,8 @@ def _across(wall: Bools, space: Bools) -> Iterator[tuple[Bools, int, int]]:
         here = between.get(row, set())
         for start, stop in sorted(begun.keys() - here):
             first = begun.pop((start, stop))
-            if MIN_WIDTH <= row - first <= MAX_WIDTH:
+            free = first > 0 and bool(ground[[first - 1, row], start:stop].all())  # floor lies all round
+            if MIN_WIDTH <= row - first <= MAX_WIDTH and not free:
                 mask: Bools = np.zeros_like(wall)
                 mask[first:row, start:stop] = True
                 yield mask, row - first, stop - start

@@ -59,6 +59,13 @@ def test_walls_without_floor_behind_them_too_long_or_too_thick_are_none() -> Non
     assert not stretches(known_model(["b" * len(floor), floor, *[narrow] * (MAX_THICKNESS + 1), *south]))
 
 
+def test_what_floor_surrounds_is_no_stretch() -> None:
+    rows = ["bbbbbbbbb", "b.......b", "b..bb...b", "b..bb...b", "b.U.....b", "bbbbbbbbb"]
+    assert not stretches(replace(known_model(rows), objects=()))
+    leaning = [*rows[:4], "b.Ubb...b", rows[5]]
+    assert measured(replace(known_model(leaning), objects=())) == [("w1", 3, 2)]
+
+
 def test_things_that_were_seen_are_no_stretches() -> None:
     rows = ["bbbbbbbbb", "b.......b", "b..gg...b", "b..gg...b", "b.U.....b", "bbbbbbbbb"]
     assert not np.any([one.mask for one in stretches(known_model(rows))])
