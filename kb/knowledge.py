@@ -16,6 +16,7 @@ from pathlib import Path
 
 from utak.kb.body import Command, Grasp, Impression
 from utak.kb.localisation.field_account import Accommodation
+from utak.kb.localisation.standing import standing
 from utak.kb.localisation.state import TrackerState
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
@@ -191,6 +192,7 @@ class Knowledge:
             spread=memory.spread,
             likely_spread=memory.likely_spread,
             leeway=memory.leeway,
+            standing=standing(memory),
             held=memory.in_hand,
             imagined=self._completions,
             touch=impression.touch,

@@ -89,8 +89,7 @@ class Tracker:
         first, newest = state.observations[0].place, state.observations[-1]
         away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
         earlier = () if state.slips else state.looks  # whose motions slip does not know how its looks lie to each other
-        look = look_at(former.surprise(command, newest.ranges), away)
-        self.state = state = replace(state, looks=(*earlier, look))
+        self.state = state = replace(state, looks=(*earlier, look_at(former.surprise(command, newest.ranges), away)))
         is_known = len(former.observations) >= MIN_KNOWN_LOOKS and not state.held_objects
         found = recognise(former.occupancy, state.looks) if is_known else None
         if found is None or (state.slips and len(set(map(_square_of, found.points))) > 1):  # later looks would not tell

@@ -1,4 +1,4 @@
-"""Chances of what may be: where things are that the task names and nobody saw, which pieces are one (chances.lp).
+"""Chances of what may be (chances.lp): where things and the robot are, which pieces are one, what joins floors.
 
 Geometry measures; the encoding makes chances of it, by what was counted.
 """
@@ -11,14 +11,17 @@ import numpy as np
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.language.atoms import atom_parts
 from utak.kb.mapping.occupancy import OPEN
+from utak.kb.perception.frame import CENTRE
 from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
+from utak.kb.task.apart import joints
 from utak.kb.task.binding import Reconciliation
 from utak.kb.task.described import claim_facts
 from utak.kb.task.pieces import touching_pieces
+from utak.kb.task.stretches import stretches
 from utak.kb.task.task import Task
 from utak.kb.world.facts import Places, facts_for_rules
-from utak.kb.world.model import VERGE_NODE, Node, WorldModel
+from utak.kb.world.model import VERGE_NODE, Node, WorldModel, hundredths
 from utak.kb.world.place_names import WAKING_ROOM
 from utak.kb.world.rooms import NO_ROOM, Rooms
 
@@ -28,14 +31,16 @@ CHANCES = KB_ENCODINGS / "chances.lp"
 def alternatives(
     task: Task, model: WorldModel, places: Places, reconciled: Reconciliation, rules: tuple[Path, ...] = ()
 ) -> tuple[str, ...]:
-    """Return may_be/3 and joined/3 as facts without full stops."""
+    """Return may_be/3, joined/3, hidden/3, plug/2, stretch/5 and loc/3 as facts without full stops."""
     facts = [*place_facts(task, model, places.rooms, reconciled)]
     facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
-    if not facts:
-        return ()
-    return tuple(
-        map(str, solve([CHANCES, *rules], [*facts, *facts_for_rules(CHANCES.stem, rules, model, places)]) or ())
-    )
+    facts += [joint.fact for joint in joints(model)]
+    unfelt = stretches(model)
+    facts += [stretch.fact for stretch in unfelt]
+    facts += standing_facts(model)
+    facts += facts_for_rules(CHANCES.stem, rules, model, places) if facts else ()
+    found = [str(atom) for atom in solve([CHANCES, *rules], facts) or ()] if facts else []
+    return (*found, *(stretch.rectangle(model) for stretch in unfelt))
 
 
 def may_be(facts: Iterable[str]) -> dict[str, dict[str, int]]:
@@ -65,6 +70,16 @@ def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconci
             case = "likely" if (x, node.name) in may_turn_out else "other"
             yield f"place({x},{node.name},{case},{_likeness(node, x, task, model)})"
     yield from _claimed_rooms(unbound, task, rooms, bound)
+
+
+def standing_facts(model: WorldModel) -> Iterator[str]:
+    """Yield the squares in which the robot may stand, for kb/asp/chances.lp."""
+    standing = model.standing
+    if standing is None:
+        return
+    for (x, y), share in sorted(standing.shares.items()):
+        east, north = standing.frame.place_to_utak(x + CENTRE[0], y + CENTRE[1])
+        yield f"stands({hundredths(east)},{hundredths(north)},{standing.case},{round(1000 * share)})"
 
 
 def _likeness(node: Node, parameter: str, task: Task, model: WorldModel) -> int:

@@ -19,8 +19,10 @@ FactRow = tuple[Value, ...]  # the arguments of one fact
 CHANCE_SIGNATURE, OPEN_SIGNATURE = ("chance", 2), ("open", 2)
 OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)
 PARAMETER_SIGNATURE = ("parameter", 1)  # the parameters of the task
-# These are about parameters and the plan, not about things.
-TASK_SIGNATURES = frozenset({PARAMETER_SIGNATURE, ("bound", 2), ("may_be", 3), *PLAN_PREDICATES})
+# These are about parameters, the plan and squares, not about things.
+TASK_SIGNATURES = frozenset(
+    {PARAMETER_SIGNATURE, ("bound", 2), ("may_be", 3), ("loc", 3), ("loc", 2), *PLAN_PREDICATES}
+)
 
 
 class Beliefs:

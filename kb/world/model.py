@@ -18,6 +18,7 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Square
 from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.localisation.standing import Standing
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
 from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.mapping.patch import Patch
@@ -105,6 +106,7 @@ class WorldModel:
     # How far from the believed point the robot may have woken in its square, in squares, map frame; the first two are
     # at most 0, the last two at least 0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    standing: Standing | None = None  # The squares in which the robot may stand; None: in that of its place
     imagined: CompletionSummary = NO_COMPLETION_SUMMARY  # Completions: sampled maps that agree with all counts
     # Floor of the map without the moved objects, which these may cover now; None while nothing was moved
     floor_under_moved: Bools | None = None
@@ -227,6 +229,13 @@ class WorldModel:
         west, south, east, north = self.leeway
         far = self.spread * math.dist(self.place, self.frame.origin)
         return x + west - far, y + south - far, x + east + far, y + north + far
+
+    @property
+    def robot_squares(self) -> Mapping[Square, float]:
+        """The squares in which the robot may stand, map frame, each with its share of the likelihood."""
+        if self.standing is None or not self.standing.shares or self.standing.case == "before":
+            return {(math.floor(self.place[0]), math.floor(self.place[1])): 1.0}
+        return self.standing.shares
 
     @property
     def place_on_view(self) -> XY:
