@@ -105,11 +105,9 @@ class TrueAlternatives(NamedTuple):
                     todo.append(other)
         return []
 
-    def stands(self, east: int, north: int) -> bool | None:
-        """Return whether the robot is in the square with a middle, hundredths of squares; None where nobody can say."""
+    def stands(self, east: int, north: int) -> bool:
+        """Return whether the robot is in the square with a middle, hundredths of squares, if its map did not slip."""
         standing = self.model.standing
-        if standing is None or self.model.anew:  # a map that was begun anew lies anywhere
-            return None
         x, y = standing.frame.place_from_utak(east / FACT_UNITS_PER_SQUARE, north / FACT_UNITS_PER_SQUARE)
         quarters = round((self.truth.heading - standing.frame.angle) / 90) % 4
         frame = TableFrame(quarters, *(math.floor(v) for v in self.truth.woke))

@@ -85,9 +85,8 @@ def squares_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
     """Yield the likeliest square in which the robot may stand, where that is not sure."""
     stands = [(int(share), int(east), int(north), case) for east, north, case, share in _of(look, "stands")]
     share, east, north, case = max(stands, default=(0, 0, 0, CERTAIN_CASE))
-    true = None if case == CERTAIN_CASE else _alternatives(look).stands(east, north)
-    if true is not None:
-        yield MeasuredSeen(case, share, true)
+    if case != CERTAIN_CASE:
+        yield MeasuredSeen(case, share, _alternatives(look).stands(east, north))
 
 
 def _of(look: LookedAt, predicate: str) -> Iterator[tuple[str, ...]]:

@@ -200,7 +200,11 @@ class AbsenceExplainer:
         elif name == "loc":
             at = tuple(fact for fact in self._facts.record.steps[step].long_facts if fact.startswith("loc("))
             instead = tuple(reason for fact in at if (reason := self._facts.reason(fact, step)) is not None)
-            because = "nothing speaks for that square: these are believed" if instead else "it is lost"
+            because = (
+                "nothing speaks for that square: these are believed"
+                if instead
+                else "the robot is lost, or began a map anew that lies anywhere"
+            )
         elif name == "hidden" and not instead:
             because = f"{thing} is no part of the floor that no seen floor joins with that of the robot"
         elif name in ("plug", "stretch") and not instead:

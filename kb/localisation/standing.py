@@ -1,8 +1,7 @@
 """The squares in which the robot may stand, with their shares of the likelihood.
 
 An orientation of the grid weighs by its map prior, an origin by the room that it has in the square of waking, another
-end of a motion by its chance, a square of the map of before by what was seen since the robot was put somewhere. That
-each point of what is left of a square is as likely is a convention.
+end of a motion by its chance. That each point of what is left of a square is as likely is a convention.
 """
 
 import math
@@ -10,10 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-import numpy as np
-
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, OriginBox, Position
-from utak.kb.localisation.hypotheses.recognition import likelihoods
 from utak.kb.localisation.hypotheses.walk_outcomes import add
 from utak.kb.localisation.state import TrackerState
 from utak.kb.objects.held_object import Square
@@ -26,7 +22,7 @@ NOWHERE = 1e-9  # squares: a box is no narrower than that
 class Standing(NamedTuple):
     """The squares in which the robot may stand."""
 
-    # sure, unsure, slips (motions ended elsewhere before), before (squares of the map of before), or lost (none known)
+    # sure, unsure, slips (motions ended elsewhere before), anew (a map begun anew lies anywhere), or lost (none known)
     case: str
     frame: Frame  # of the map whose squares they are
     shares: Mapping[Square, float]  # of the likelihood; what is missing from 1 is elsewhere
@@ -34,18 +30,12 @@ class Standing(NamedTuple):
 
 def standing(state: TrackerState) -> Standing:
     """Return the squares in which the robot may stand."""
-    former = state.former
-    if former is not None and state.looks and not state.slips:  # whose motions slip does not know how its looks lie
-        chances = likelihoods(state.looks)
-        rows, columns = np.nonzero(chances >= MIN_STATED_SHARE)
-        west, south = former.occupancy.west, former.occupancy.south
-        found = zip(columns.tolist(), rows.tolist(), chances[rows, columns].tolist(), strict=True)
-        return Standing("before", former.frame, {(x + west, y + south): share for x, y, share in found})
     if state.lost:
         return Standing("lost", state.frame, {})
     shares = _shares(_weighed(state))
     sure = state.sure and len(shares) == 1 and not any(state.residuals[-1:])
-    return Standing("slips" if state.slips else "sure" if sure else "unsure", state.frame, shares)
+    case = "anew" if state.been else "slips" if state.slips else "sure" if sure else "unsure"
+    return Standing(case, state.frame, shares)
 
 
 def _shares(weighed: Iterable[tuple[OriginBox, float]]) -> dict[Square, float]:

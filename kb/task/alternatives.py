@@ -75,7 +75,7 @@ def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconci
 def standing_facts(model: WorldModel) -> Iterator[str]:
     """Yield the squares in which the robot may stand, for kb/asp/chances.lp."""
     standing = model.standing
-    if standing is None:
+    if standing is None or standing.case == "anew":  # from where it woke it stands anywhere
         return
     for (x, y), share in sorted(standing.shares.items()):
         east, north = standing.frame.place_to_utak(x + CENTRE[0], y + CENTRE[1])

@@ -233,7 +233,7 @@ class WorldModel:
     @property
     def robot_squares(self) -> Mapping[Square, float]:
         """The squares in which the robot may stand, map frame, each with its share of the likelihood."""
-        if self.standing is None or not self.standing.shares or self.standing.case == "before":
+        if self.standing is None or not self.standing.shares:
             return {(math.floor(self.place[0]), math.floor(self.place[1])): 1.0}
         return self.standing.shares
 

@@ -121,13 +121,11 @@ def test_where_a_thing_is_that_nobody_saw_is_compared_with_what_is_so() -> None:
 
 def test_where_the_robot_stands_is_compared_from_where_it_woke() -> None:
     """It woke in the square (5, 8) of the table, and is in (12, 8), whatever it believes."""
-    model = SimpleNamespace(**vars(MODEL), standing=Standing("unsure", Frame(), {}), anew=False)
+    model = SimpleNamespace(**vars(MODEL), standing=Standing("unsure", Frame(), {}))
     found = moment("loc(700,0,90)", "loc(600,0,10)")
     assert found.alternatives is not None
     compared = found._replace(alternatives=found.alternatives._replace(model=model))
     assert verdicts(compared) == {"loc(700,0,90)": True, "loc(600,0,10)": False}
-    anew = SimpleNamespace(**{**vars(model), "anew": True})
-    assert verdicts(found._replace(alternatives=found.alternatives._replace(model=anew))) == {}
 
 
 def test_a_stretch_of_wall_is_a_thing_where_one_covers_most_of_it() -> None:

@@ -172,17 +172,6 @@ def recognise(occupancy: OccupancyMap, looks: Sequence[Look]) -> Recognised | No
     return Recognised(*place_of(likely, ordered, half_cell(looks)), tuple(ordered))
 
 
-def likelihoods(looks: Sequence[Look]) -> NDArray[np.float64]:
-    """Return the chance of each square of a known map to be that of the newest look, (rows, columns)."""
-    # As in `mean_likelihood`: before all looks it is as likely anywhere on the map together as where nothing is known.
-    known = _is_known(looks[-1].scores)
-    scores = np.where(known, _total(looks, (0.5, 0.5)), -np.inf).astype(np.float64)
-    best = max(float(scores.max(initial=0.0)), 0.0)
-    anywhere = np.exp(scores - best) / max(int(known.sum()), 1)
-    chances: NDArray[np.float64] = anywhere / (anywhere.sum() + math.exp(-best))
-    return chances
-
-
 def half_cell(looks: Sequence[Look]) -> float:
     """Return half the side of the cells to which looks tell a place: a square by one alone."""
     return 0.5 / SUBSQUARES if len(looks) > 1 else 0.5

@@ -9,11 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation
-from utak.kb.localisation.hypotheses.recognition import Look
 from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from utak.kb.localisation.standing import MIN_STATED_SHARE, standing
+from utak.kb.localisation.standing import standing
 from utak.kb.localisation.state import TrackerState
-from utak.kb.mapping.occupancy import OccupancyMap
 from utak.kb.perception.frame import CENTRE, Frame
 
 RANGES = np.zeros((160, 2), np.int16)
@@ -81,17 +79,9 @@ def test_who_was_put_somewhere_shares_what_is_left_of_squares(error: list[float]
     assert standing(beside).shares == pytest.approx({(3, 3): 0.5, (4, 3): 0.5})
 
 
-def test_who_was_put_elsewhere_may_be_where_what_it_saw_fits() -> None:
-    occupancy = OccupancyMap()
-    scores = np.zeros(occupancy.state.shape, np.float32)
-    for square, nats in (((3, -2), 9.0), ((9, 9), 8.0), ((0, 0), -100.0)):
-        scores[occupancy.index(*square)] = nats
-    lifted = state((0.0, 0.0), former=TrackerState(), looks=(Look(scores, (0.0, 0.0)),))
-    found = standing(lifted)
-    assert found.case == "before"
-    assert found.shares[3, -2] == pytest.approx(math.e * found.shares[9, 9])
-    assert 1 - 2 * MIN_STATED_SHARE < sum(found.shares.values()) < 1
-    assert standing(replace(lifted, unsteady=True)).case == "slips"  # how its looks lie to each other it does not know
+def test_a_map_that_was_begun_anew_lies_anywhere() -> None:
+    found = standing(state((0.0, 0.0), (4.0, -2.0), been=((0.0, 0.0),), unsteady=True))
+    assert (found.case, found.shares) == ("anew", {(4, -2): 1.0})
 
 
 def test_who_is_lost_or_slips_says_so() -> None:
