@@ -175,13 +175,10 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("movable", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
     },
     "persistence": {
-        ("thing", 1): (NODE_ARGUMENT,),
+        **{(name, 1): (NODE_ARGUMENT,) for name in ("thing", "watched", "looked_at_again")},
         **{(name, 1): (AMOUNT_ARGUMENT,) for name in ("removed", "checked", "since_change")},
         ("out_of_sight", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
-        ("by_count", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("persists", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("watched", 1): (NODE_ARGUMENT,),
-        ("looked_at_again", 1): (NODE_ARGUMENT,),
+        **{(name, 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT) for name in ("by_count", "persists")},
     },
     "rooms": {
         ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
