@@ -7,6 +7,7 @@ nothing to make sure of.
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -128,11 +129,14 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
 
 
 def check_elsewhere(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
-    """Return what to see or feel before something is said to be elsewhere than it began; [] when that is sure."""
+    """Return what to see or feel next before something is said to be elsewhere than it began; [] when that is sure."""
     unseen = unseen_beyond_door(goal, began, covered, situation)
     if unseen is not None:
         return [unseen]
-    return [Subgoal(SubgoalKind.INSPECT, *felt) for felt in unfelt_bounds(goal, began, covered, situation)]
+    looks = unfelt_bounds(goal, began, covered, situation)
+    # With something in hand, a push may show what is further away.
+    nearest = islice(looks, 1 if situation.model.held is None else None)
+    return [Subgoal(SubgoalKind.INSPECT, *look) for look in nearest]
 
 
 def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:

@@ -30,6 +30,7 @@ from utak.planner.deciding.verification import (
     look_before_grasp,
     unseen_beyond_door,
 )
+from utak.planner.goals.bounds import unfelt_bounds
 from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.stages import Stage
 
@@ -204,6 +205,18 @@ def test_a_door_is_sure_when_verge_was_felt_on_both_of_its_jambs() -> None:
     assert is_doubtful()
     assert all(is_doubtful(jamb) for jamb in jambs)
     assert not is_doubtful(*jambs)
+
+
+def test_of_what_is_to_be_felt_the_nearest_is_asked_for_first() -> None:
+    model = known_model(STUB)
+    situation = situation_of(model)
+    began, covered = (-20.0, 0.5), model.squares([(0, 0)])
+    looks = [look.squares for look in unfelt_bounds(IN_NEXT_ROOM, began, covered, situation)]
+    ways = [way.cost for way in map(situation.cost_maps.nearest, looks) if way is not None]
+    assert len(ways) == len(looks) > 1
+    assert ways == sorted(ways)
+    (first,) = check_elsewhere(IN_NEXT_ROOM, began, covered, situation)
+    assert first.squares.tolist() == looks[0].tolist()
 
 
 ARM = [  # a room with an arm to the east, just as long as it is seen to be
