@@ -16,6 +16,7 @@ from pathlib import Path
 
 from utak.kb.body import Command, Grasp, Impression
 from utak.kb.localisation.field_account import Accommodation
+from utak.kb.localisation.standing import standing
 from utak.kb.localisation.state import TrackerState
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
@@ -37,6 +38,7 @@ from utak.kb.world.objects import (
     seen_objects,
     separate_felt_things,
     with_movability,
+    with_persistence,
     within_reach,
 )
 
@@ -190,6 +192,7 @@ class Knowledge:
             spread=memory.spread,
             likely_spread=memory.likely_spread,
             leeway=memory.leeway,
+            standing=standing(memory),
             held=memory.in_hand,
             imagined=self._completions,
             touch=impression.touch,
@@ -216,7 +219,8 @@ class Knowledge:
         for load in self.memory.held_objects.values():
             model, patch = lay_upon(model, load)
             objects += (held_node(load, patch, int(model.labels.max())),)
-        self.objects = with_movability(sorted(objects, key=lambda node: int(node.name[1:])), self.rules)
+        nodes = with_movability(sorted(objects, key=lambda node: int(node.name[1:])), self.rules)
+        self.objects = with_persistence(nodes, self.memory, self.rules)
         self.tracker.keep_things(
             {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}
         )

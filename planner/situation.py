@@ -100,6 +100,8 @@ class Situation:
     near_misses: tuple[tuple[str, str, str], ...] = ()
     # By parameter of the task: other nodes that match it as well as the one that it is bound to
     as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    # By parameter of the task that means nothing seen: the places where it may be, with percent (kb/asp/chances.lp)
+    may_be: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:

@@ -150,6 +150,18 @@ def _joined(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
     return moment.alternatives and moment.alternatives.is_one_thing(*arguments[:2])
 
 
+def _hidden(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
+    return moment.alternatives and moment.alternatives.led_to(arguments[0]) == arguments[1]
+
+
+def _plug(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
+    return moment.alternatives and moment.alternatives.is_plug(arguments[0])
+
+
+def _loc(moment: Moment, arguments: tuple[str, ...]) -> bool | None:
+    return moment.alternatives and moment.alternatives.stands(*map(int, arguments[:2]))
+
+
 STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("kind", 3): Row(_kind, 2, True),
     ("shape", 3): Row(_shape, 2, True),
@@ -158,6 +170,9 @@ STATEMENTS: Mapping[tuple[str, int], Row] = {
     ("adjacent", 3): Row(_adjacent, 2),
     ("may_be", 3): Row(_may_be, 2, True),
     ("joined", 3): Row(_joined, 2),
+    ("hidden", 3): Row(_hidden, 2, True),
+    ("plug", 2): Row(_plug, 1),
+    ("loc", 3): Row(_loc, 2),
     ("region", 3): Row(_region, 2),
     ("door", 2): Row(is_door, 1),
     ("connects", 4): Row(does_connect, 3),

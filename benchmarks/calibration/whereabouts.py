@@ -1,10 +1,12 @@
-"""The truth about places where a thing may be that nobody saw, and about pieces that are one thing or several."""
+"""The truth about what may be besides what was seen: where things are, what is one thing, what joins floors."""
 
+import math
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 from shapely import Point
 
 from benchmarks.calibration.figures import class_of
@@ -12,9 +14,13 @@ from benchmarks.calibration.truth import VERGE, NodeTruth, TableTruth
 from benchmarks.harness.beliefs import TableFrame
 from utak.geometry.kernels.arrays import Square
 from utak.kb.objects.parts import parts_of
+from utak.kb.task.apart import NO_PART, floor_parts
+from utak.kb.task.stretches import stretches
 from utak.kb.task.task import SHAPE_SUBCLASSES, Task
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE
 from utak.kb.world.rooms import Rooms
 
+CELLS_TO_A_SIDE = 4  # of a square: cells in which the true floor is followed, for a passage may fill no whole square
 TAKEN_SHARE = 0.5  # of the squares of a thing: where so many were taken for verge, it was
 
 
@@ -98,6 +104,50 @@ class TrueAlternatives(NamedTuple):
                     before[other] = square
                     todo.append(other)
         return []
+
+    def stands(self, east: int, north: int) -> bool:
+        """Return whether the robot is in the square with a middle, hundredths of squares, if its map did not slip."""
+        standing = self.model.standing
+        x, y = standing.frame.place_from_utak(east / FACT_UNITS_PER_SQUARE, north / FACT_UNITS_PER_SQUARE)
+        quarters = round((self.truth.heading - standing.frame.angle) / 90) % 4
+        frame = TableFrame(quarters, *(math.floor(v) for v in self.truth.woke))
+        return frame.square(math.floor(x), math.floor(y)) in self.truth.robot_squares
+
+    def is_plug(self, name: str) -> bool:
+        """Return whether things cover most of a stretch of what bounds the floor."""
+        mask = next(stretch.mask for stretch in stretches(self.model) if stretch.name == name)
+        squares, verge = self._squares(mask).keys(), self.truth.about(VERGE)
+        things = {square for thing in self.truth.things for square in self.truth.about(thing)} - verge
+        return 2 * len(squares & things) > len(squares)
+
+    def led_to(self, apart: str) -> str:
+        """Return the part of the floor to which a way over the true floor leads first from another one."""
+        # NO_PART where it is no floor, or where no way leads to a part that was seen.
+        parts = {name: self._squares(mask).keys() for name, mask in floor_parts(self.model).items()}
+        shape = CELLS_TO_A_SIDE * self.truth.height, CELLS_TO_A_SIDE * self.truth.width
+        rows, columns = (np.indices(shape) + 0.5) / CELLS_TO_A_SIDE
+        floor = shapely.contains_xy(self.truth.floor, columns, rows)
+        goals = {at: name for name, squares in parts.items() if name != apart for at in self._fine(squares)}
+        before = {at for at in self._fine(parts[apart]) if floor[at]}
+        todo = deque(sorted(before))
+        while todo:
+            at = todo.popleft()
+            if at in goals:
+                return goals[at]
+            for step in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+                other = at[0] + step[0], at[1] + step[1]
+                inside = 0 <= other[0] < shape[0] and 0 <= other[1] < shape[1]
+                if inside and other not in before and floor[other]:
+                    before.add(other)
+                    todo.append(other)
+        return NO_PART
+
+    def _fine(self, squares: Iterable[Square]) -> Iterator[tuple[int, int]]:
+        """Yield the cells of CELLS_TO_A_SIDE a side into which squares of the table fall: rows and columns."""
+        within = range(CELLS_TO_A_SIDE)
+        for x, y in squares:
+            if 0 <= x < self.truth.width and 0 <= y < self.truth.height:
+                yield from ((CELLS_TO_A_SIDE * y + i, CELLS_TO_A_SIDE * x + j) for i in within for j in within)
 
     def is_one_thing(self, one: str, other: str) -> bool | None:
         """Return whether two pieces are one thing; None where one of them is none."""

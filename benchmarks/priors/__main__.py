@@ -24,13 +24,25 @@ from benchmarks.harness.judging import CHECKOUT
 from benchmarks.priors.count import (
     Counted,
     counted_classes,
+    counted_joints,
     counted_kinds,
     counted_pieces,
     counted_places,
+    counted_squares,
+    counted_stretches,
     counted_whereabouts,
 )
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, fits_seen, places_seen, regions_seen
-from benchmarks.priors.whereabouts import PieceSeen, WhereaboutSeen, pieces_seen, whereabouts_seen
+from benchmarks.priors.whereabouts import (
+    MeasuredSeen,
+    PieceSeen,
+    WhereaboutSeen,
+    joints_seen,
+    pieces_seen,
+    squares_seen,
+    stretches_seen,
+    whereabouts_seen,
+)
 from benchmarks.priors.written import places_text, text
 from utak.simulator.run.warming import warm_all
 
@@ -50,15 +62,20 @@ class CountedMoment(NamedTuple):
 
 
 class WhereaboutsMoment(NamedTuple):
-    """The places and pieces of one moment that are counted."""
+    """The things of one moment that are counted of what may be besides what was seen."""
 
     places: tuple[WhereaboutSeen, ...]
     pieces: tuple[PieceSeen, ...]
+    joints: tuple[MeasuredSeen, ...]
+    stretches: tuple[MeasuredSeen, ...]
+    squares: tuple[MeasuredSeen, ...]
 
 
 def whereabouts_noted(look: LookedAt) -> WhereaboutsMoment:
-    """Return what is counted of a moment about places and pieces."""
-    return WhereaboutsMoment(tuple(whereabouts_seen(look)), tuple(pieces_seen(look)))
+    """Return what is counted of a moment of what may be besides what was seen."""
+    return WhereaboutsMoment(
+        *(tuple(seen(look)) for seen in (whereabouts_seen, pieces_seen, joints_seen, stretches_seen, squares_seen))
+    )
 
 
 def noted(look: LookedAt) -> CountedMoment:
@@ -116,19 +133,26 @@ def written(moments: Sequence[CountedMoment], command: str, worlds: int) -> str:
 
 
 def whereabouts_written(moments: Sequence[WhereaboutsMoment], command: str, worlds: int) -> str:
-    """Return the file of priors of places and pieces that some moments give."""
-    places = [place for moment in moments for place in moment.places]
-    pieces = [piece for moment in moments for piece in moment.pieces]
-    counts = (
-        f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} places, {len(pieces)} pairs of pieces"
+    """Return the file of priors of what may be besides what was seen that some moments give."""
+    places, pieces, joints, stretches, squares = (
+        list(chain.from_iterable(seen)) for seen in zip(*moments, strict=True)
     )
-    return text([*counted_whereabouts(places), *counted_pieces(pieces)], None, [command, counts], "chances.lp")
+    counts = (
+        f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} places, {len(pieces)} pairs of pieces, "
+        f"{len(joints)} parts of floors, {len(stretches)} stretches, {len(squares)} squares"
+    )
+    counted = [
+        *(*counted_whereabouts(places), *counted_pieces(pieces)),
+        *(*counted_joints(joints), *counted_stretches(stretches), *counted_squares(squares)),
+    ]
+    return text(counted, None, [command, counts], "chances.lp")
 
 
 def _read_whereabouts(line: str) -> WhereaboutsMoment:
-    """Return a moment of places and pieces from its line of JSON."""
-    places, pieces = json.loads(line)
-    return WhereaboutsMoment(tuple(WhereaboutSeen(*one) for one in places), tuple(PieceSeen(*one) for one in pieces))
+    """Return a moment of what may be besides what was seen from its line of JSON."""
+    kinds = (WhereaboutSeen, PieceSeen, *(MeasuredSeen,) * 3)
+    found = zip(kinds, json.loads(line), strict=True)
+    return WhereaboutsMoment(*(tuple(kind(*one) for one in seen) for kind, seen in found))
 
 
 def places_written(moments: Sequence[CountedMoment], commands: Sequence[str], worlds: int) -> str:
@@ -161,7 +185,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
     parser.add_argument("-o", "--output", type=Path, help="the file (default that of kb/asp)")
     parser.add_argument("--places", type=Path, default=PLACES_FILE, help="that of places (%(default)s)")
-    parser.add_argument("--whereabouts", action="store_true", help="count where things may be, and pieces, instead")
+    parser.add_argument("--whereabouts", action="store_true", help="count what may be besides what was seen, instead")
     return parser
 
 

@@ -51,7 +51,7 @@ LEAD = dict(zip(MISFIT, (bins(0, 1, 3), WHOLE, WHOLE), strict=True))
 OPENNESS = dict(zip(MISFIT, (bins(0, 26, 101, 301), bins(0, 101), bins(0, 26, 101)), strict=True))
 # Of a place where a thing may be (kb/asp/chances.lp), by its case: bins of its measure.
 WHEREABOUT_MEASURE = {
-    "likely": bins(0, 1, 10),
+    "likely": bins(0, 10, 20, 50),
     "other": WHOLE,
     "open": bins(0, 5, 15, 30),
     "closed": WHOLE,
@@ -60,6 +60,12 @@ WHEREABOUT_MEASURE = {
 }
 # Of pieces that touch, by what was felt on them: bins of the confidence in the class of their outline, percent.
 JOINED = {"unfelt": bins(0, 75), "same": WHOLE}
+# Of parts of the floor that unseen floor may join, by case: bins of its measure (kb/task/apart.py).
+PASSAGE = {"near": bins(0, 2, 3), "further": WHOLE, "wall": bins(0, 30), "open": bins(0, 2, 3, 5), "shut": bins(0, 5)}
+# Of stretches of what bounds the floor, by case: bins of their thickness, squares.
+PLUG = {"slim": bins(0, 2, 3, 5), "broad": bins(0, 3, 5)}
+# Of the likeliest square in which the robot may stand, by case: bins of its share of the likelihood, thousandths.
+STANDING = {"unsure": bins(0, 600, 900), "slips": bins(0, 600, 900)}
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one
 # Of facts about places, by case (kb/world/chances.py): bins of what was measured, percent.

@@ -17,14 +17,17 @@ from benchmarks.priors.bins import (
     NONE_MISFIT,
     OBJECT_MASS,
     OPENNESS,
+    PASSAGE,
     PLACES,
+    PLUG,
+    STANDING,
     WHEREABOUT_MEASURE,
     WHOLE,
     Bin,
     bin_of,
 )
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
-from benchmarks.priors.whereabouts import PieceSeen, WhereaboutSeen
+from benchmarks.priors.whereabouts import MeasuredSeen, PieceSeen, WhereaboutSeen
 
 THOUSAND = 1000
 MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
@@ -109,6 +112,21 @@ def counted_whereabouts(places: Iterable[WhereaboutSeen]) -> Iterator[Counted]:
     """Yield how many places of each case were where the thing was; those that a claim is against are left out."""
     seen = ((place.case, place.measure, place.true) for place in places if not place.against)
     return _counted_by_case("counted_place", WHEREABOUT_MEASURE, seen)
+
+
+def counted_joints(joints: Iterable[MeasuredSeen]) -> Iterator[Counted]:
+    """Yield how many parts of the floor were those to which unseen floor led first from another one, by case."""
+    return _counted_by_case("counted_passage", PASSAGE, joints)
+
+
+def counted_stretches(stretches: Iterable[MeasuredSeen]) -> Iterator[Counted]:
+    """Yield how many stretches of what bounds the floor were things, by case and thickness."""
+    return _counted_by_case("counted_plug", PLUG, stretches)
+
+
+def counted_squares(squares: Iterable[MeasuredSeen]) -> Iterator[Counted]:
+    """Yield how many likeliest squares were those in which the robot stood, by case and share of the likelihood."""
+    return _counted_by_case("counted_square", STANDING, squares)
 
 
 def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:

@@ -1,4 +1,4 @@
-"""Measures of where things may be and of pieces that touch, as kb/asp/chances.lp is given them, with what is true."""
+"""Measures of what may be besides what was seen, as kb/asp/chances.lp is given them, with what is true."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -6,6 +6,8 @@ from typing import NamedTuple
 from benchmarks.calibration.runs import LookedAt
 from benchmarks.calibration.whereabouts import TrueAlternatives
 from utak.kb.language.atoms import atom_parts
+
+CERTAIN_CASE = "sure"  # of a square that is not counted, for it is certain
 
 
 class WhereaboutSeen(NamedTuple):
@@ -56,6 +58,40 @@ def pieces_seen(look: LookedAt) -> Iterator[PieceSeen]:
             one, other, felt, share = arguments
             if (true := _alternatives(look).is_one_thing(one, other)) is not None:
                 yield PieceSeen(felt, int(share), true)
+
+
+class MeasuredSeen(NamedTuple):
+    """Anything else that may be, as a case and a measure."""
+
+    case: str
+    measure: int
+    true: bool
+
+
+def joints_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
+    """Yield the parts of the floor with which others may be joined that no seen floor joins with the robot's."""
+    between = [*_of(look, "between")]
+    true = {apart: _alternatives(look).led_to(apart) for apart, *_ in between}
+    yield from (MeasuredSeen(case, int(measure), true[apart] == other) for apart, other, case, measure in between)
+
+
+def stretches_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
+    """Yield the stretches of what bounds the floor that were never felt."""
+    for stretch, case, thickness in _of(look, "unfelt"):
+        yield MeasuredSeen(case, int(thickness), _alternatives(look).is_plug(stretch))
+
+
+def squares_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
+    """Yield the likeliest square in which the robot may stand, where that is not sure."""
+    stands = [(int(share), int(east), int(north), case) for east, north, case, share in _of(look, "stands")]
+    share, east, north, case = max(stands, default=(0, 0, 0, CERTAIN_CASE))
+    if case != CERTAIN_CASE:
+        yield MeasuredSeen(case, share, _alternatives(look).stands(east, north))
+
+
+def _of(look: LookedAt, predicate: str) -> Iterator[tuple[str, ...]]:
+    """Yield the arguments of the facts of a predicate that chances.lp was given at this moment."""
+    yield from (arguments for name, arguments in _given(look) if name == predicate)
 
 
 def _alternatives(look: LookedAt) -> TrueAlternatives:

@@ -45,6 +45,21 @@ WORDS = {
         "Of 1000 places of case K with a measure of L to U, W were where the thing was that the task names.",
         "of 1000 places of case {K} with a measure of {L} to {U}, {W} were where the thing was",
     ),
+    "counted_passage": (
+        "K, L, U, W",
+        "Of 1000 parts of the floor of case K with a measure of L to U, W were those to which unseen floor led first.",
+        "of 1000 parts of the floor of case {K} with a measure of {L} to {U}, {W} were those to which unseen floor led",
+    ),
+    "counted_plug": (
+        "K, L, U, W",
+        "Of 1000 stretches of what bounds the floor of case K (slim or broad), L to U squares thick, W were things.",
+        "of 1000 stretches of what bounds the floor of case {K}, {L} to {U} squares thick, {W} were things",
+    ),
+    "counted_square": (
+        "K, L, U, W",
+        "Of 1000 likeliest squares of case K with L to U thousandths of the likelihood, W were that of the robot.",
+        "of 1000 likeliest squares of case {K} with {L} to {U} thousandths, {W} were that of the robot",
+    ),
     "counted_joined": (
         "F, L, U, W",
         "Of 1000 pairs of parts of an outline that touch, with colours F (same or unfelt) and L to U percent for the "

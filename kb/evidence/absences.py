@@ -197,6 +197,18 @@ class AbsenceExplainer:
                 if fact.startswith(f"bound({thing},") and (reason := self._facts.reason(fact, step)) is not None
             )
             because = f"{thing} means something, which is there" if instead else f"the task names no object {thing}"
+        elif name == "loc":
+            at = tuple(fact for fact in self._facts.record.steps[step].long_facts if fact.startswith("loc("))
+            instead = tuple(reason for fact in at if (reason := self._facts.reason(fact, step)) is not None)
+            because = (
+                "nothing speaks for that square: these are believed"
+                if instead
+                else "the robot is lost, or began a map anew that lies anywhere"
+            )
+        elif name == "hidden" and not instead:
+            because = f"{thing} is no part of the floor that no seen floor joins with that of the robot"
+        elif name in ("plug", "stretch") and not instead:
+            because = f"no stretch {thing} was measured: no wall there was left unfelt with floor on both sides"
         elif name == "joined" and not instead:
             because = "no border that they have in common was measured, or they were felt in different colours"
         elif name in ("door", "connects", "width") and not instead:

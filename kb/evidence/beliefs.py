@@ -107,7 +107,7 @@ class FactExplainer:
             return self._corner_reasons(arguments, step)
         if name == "movable":
             return self._movable_reasons(node, arguments[1], step)
-        if name in ("may_be", "joined"):
+        if name in ("may_be", "joined", "hidden", "plug", "loc"):
             found = self.decision("chances", fact, step, oldest=step)
             return [found] if found else []
         if name == "held":
@@ -117,6 +117,8 @@ class FactExplainer:
         if name == "adjacent":
             things = sorted(arguments[:2], key=lambda thing: thing != ROOT_NODE)
             return self._facts([f"{'offset' if one == ROOT_NODE else 'rect'}({one}," for one in things], step)
+        if name == "stretch":
+            return [squares_reason(self.record, step, VERGE_NODE)]
         if name in ("region", "part_of"):
             return self._region_reasons(node, step)
         if name == "bound":

@@ -198,6 +198,12 @@ def _chance_reasons(
     if name in ("touch", "whole"):
         nodes = dict.fromkeys(piece.partition("_")[0] for piece in arguments[: 2 if name == "touch" else 1])
         return [squares_reason(record, step, node) for node in nodes]
+    if name == "between":
+        return [squares_reason(record, step, FLOOR_NODE)]
+    if name == "unfelt":
+        return [squares_reason(record, step, VERGE_NODE)]
+    if name == "stands":
+        return [command_reason(record.steps[step])]
     place = arguments[1] if name == "place" else arguments[0]
     facts = [fact for fact in record.steps[step].long_facts if fact.startswith(FACT_OF_PLACE.get(place[:1], "-"))]
     about = [fact for fact in facts if atom_parts(fact)[1][0] == place]

@@ -197,6 +197,7 @@ MAP_REGION_ARGUMENT = pattern_argument("region of the map", "part[0-9]+", "part1
 MAP_PART_ARGUMENT = pattern_argument("region or part", "part[0-9]+|o[0-9]+_[0-9]+", "part1 or o1_1")
 # Where a thing may be that the task names: an object, a room, a door, or the verge.
 WHEREABOUTS_ARGUMENT = pattern_argument("place of a thing", "[odr][0-9]+|verge", "r1")
+STRETCH_ARGUMENT = pattern_argument("stretch of the bounds", "w[0-9]+", "w1")  # that was never felt
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
 LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
@@ -293,8 +294,12 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
     ("shape", 3): _property(word_argument("shape", SHAPE_CLASSES)),
     ("colour", 3): _property(COLOUR_ARGUMENT),
     ("movable", 2): _property(),
+    ("persists", 2): _uncertain(THING_ARGUMENT, open=Openness.NEVER),
     ("adjacent", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(settled=frozenset({"org"}), symmetric=True),
     ("joined", 3): _uncertain(THING_ARGUMENT, THING_ARGUMENT)._replace(symmetric=True),
+    ("loc", 3): _uncertain(LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER),
+    ("plug", 2): _uncertain(STRETCH_ARGUMENT, open=Openness.NEVER),
+    ("stretch", 5): BeliefPredicate((STRETCH_ARGUMENT, *TWO_POINTS), Openness.NEVER),
     ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),
     ("door", 2): _uncertain(DOOR_ARGUMENT),
     ("connects", 4): _uncertain(DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT),
@@ -306,6 +311,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
         word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT, open=Openness.NEVER
     ),
     ("region", 3): _uncertain(MAP_REGION_ARGUMENT, word_argument("state", ("zero", "nonzero"))),
+    ("hidden", 3): _uncertain(MAP_REGION_ARGUMENT, MAP_REGION_ARGUMENT, open=Openness.NEVER),
     ("part_of", 2): BeliefPredicate((MAP_PART_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
     ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
     ("junction", 4): BeliefPredicate(

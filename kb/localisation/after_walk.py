@@ -24,7 +24,7 @@ from utak.kb.localisation.hypotheses.frames import (
 from utak.kb.localisation.hypotheses.map_prior import weigh_hypotheses
 from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_two_walks, reestimate_walk
 from utak.kb.localisation.hypotheses.remap import ReplayPrefixes, remap
-from utak.kb.localisation.hypotheses.walk_outcomes import observation_places, slipped_ends
+from utak.kb.localisation.hypotheses.walk_outcomes import entered_square, observation_places, slipped_ends
 from utak.kb.localisation.propose.blocked import has_whole_way, possible_ends
 from utak.kb.localisation.propose.origin import blocked_walks_with_origin
 from utak.kb.localisation.score import (
@@ -42,6 +42,7 @@ from utak.kb.localisation.score import (
     with_others,
 )
 from utak.kb.localisation.state import TrackerState
+from utak.kb.mapping.occupancy import FREE
 from utak.kb.perception.frame import Frame
 
 MAX_REPLAYED_OBSERVATIONS = 120  # observations replayed to try frames, for one choice: bounds its time; tuned
@@ -77,6 +78,7 @@ class _WalkExplainer:
     def __init__(self, state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> None:
         """Compute the explanation that the walk went its whole way, and where it may have been blocked."""
         self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
+        self._ahead = ends.predicted
         self._budget = SearchBudget(state.search_count)
         ahead = [self._explanation("predicted", place, ends.predicted) for place in state.places_near(ends.predicted)]
         self._whole = min(ahead, key=lambda one: one.residual)
@@ -126,11 +128,7 @@ class _WalkExplainer:
         state = self._state
         explanations = [first]
         explanations += [one for one in self._possible_ends if one.how != "predicted"]
-        explanations += [
-            self._explanation("blocked", place, self._predicted)
-            for place in self._blocked_places
-            if not self._possible_ends
-        ]
+        explanations += [] if self._possible_ends else map(self._blocked, self._blocked_places)
         explanations += [
             self._explanation("slipped", place, self._predicted) for place in slipped_ends(self._predicted)
         ]
@@ -235,6 +233,12 @@ class _WalkExplainer:
                 break
         residual, number = min(tried)
         return frames[number], residual
+
+    def _blocked(self, place: Position) -> Explanation:
+        """Return the explanation that the walk was blocked at `place`, contradicted where nothing can stand ahead."""
+        occupancy, entered = self._state.occupancy, entered_square(place, self._ahead)
+        barred = entered is not None and occupancy.state[occupancy.index(*entered)] != FREE
+        return self._explanation("blocked", place, self._predicted)._replace(contradicted=not barred)
 
     def _explanation(self, how: str, place: Position, predicted: Position) -> Explanation:
         """Return the explanation that the observation was made at `place`, in the believed frame."""

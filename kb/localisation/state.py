@@ -29,6 +29,7 @@ from utak.kb.localisation.hypotheses.what_if import Surprise
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OPEN, OccupancyMap
 from utak.kb.objects.held_object import HeldObject, Square
+from utak.kb.objects.persistence import ChangesByOthers
 from utak.kb.perception.frame import CENTRE, Frame
 
 MAX_RESIDUAL = 8  # residual fields of the last observations together from which localisation has failed; tuned
@@ -76,6 +77,7 @@ class TrackerState:
     place_error: OriginBox = (0.0, 0.0, 0.0, 0.0)  # how far Utak may be from `place` since it was lifted: W, S, E, N
     # By square that others changed, map frame: the number of the first observation since
     changed_at: Mapping[Square, int] = field(default_factory=dict)
+    removed: int = 0  # how many known things others were seen to have taken away, on any map
     lifted_at: frozenset[int] = frozenset()  # the numbers of the observations before which it was put elsewhere
     # What was believed before it was put where it recognised nothing yet, and what it saw since
     former: "TrackerState | None" = None
@@ -100,6 +102,12 @@ class TrackerState:
     def places_near(self, place: Position) -> list[Position]:
         """Return the places from which an observation may be made that ends a motion at `place`, one in each square."""
         return places_within(place, self.place_error) if any(self.place_error) else list(observation_places(place))
+
+    @property
+    def changes(self) -> ChangesByOthers:
+        """Return what others were seen to change."""
+        last = max(self.changed_at.values(), default=None)
+        return ChangesByOthers(self.removed, None if last is None else len(self.observations) - 1 - last)
 
     # -- pose and track --------------------------------------------------------------------------
 

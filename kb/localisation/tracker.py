@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
+from utak.geometry.motion.se2 import Motion
 from utak.kb.body import Command, Impression, Move, Push, Release, Turn
 from utak.kb.localisation.after_carry import (
     agreeing_origins,
@@ -88,15 +89,14 @@ class Tracker:
         first, newest = state.observations[0].place, state.observations[-1]
         away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
         earlier = () if state.slips else state.looks  # whose motions slip does not know how its looks lie to each other
-        look = look_at(former.surprise(command, newest.ranges), away)
-        self.state = state = replace(state, looks=(*earlier, look))
+        self.state = state = replace(state, looks=(*earlier, look_at(former.surprise(command, newest.ranges), away)))
         is_known = len(former.observations) >= MIN_KNOWN_LOOKS and not state.held_objects
         found = recognise(former.occupancy, state.looks) if is_known else None
         if found is None or (state.slips and len(set(map(_square_of, found.points))) > 1):  # later looks would not tell
             return None
         looked = state.observations[-len(state.looks) :]  # since a map begun anew when lost, the newest alone
         ways = [(look.away[0] - away[0], look.away[1] - away[1]) for look in state.looks]
-        self.state = replace(former, unsteady=former.unsteady or state.unsteady)
+        self.state = replace(former, unsteady=former.unsteady or state.unsteady, removed=state.removed)
 
         def clashes(point: Position) -> int:
             """Return how many fields of all looks contradict the map if the newest was made at a point."""
@@ -192,7 +192,8 @@ class Tracker:
         self._count_confirmations(explanation)
         self._note_motion(explanation)
         if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
-            squares = explanation.contact_squares or {entered_square(explanation.place, walk.predicted)}
+            entered = entered_square(explanation.place, walk.predicted)
+            squares = explanation.contact_squares or {square for square in [entered] if square is not None}
             self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
         return self._integrate(explanation, ranges)
 
@@ -258,6 +259,7 @@ class Tracker:
         if isinstance(command, Turn) and (state.beside_line or state.place_doubt):
             held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
             self.update_object(held)
+        self._uncover(held, motion)
         judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
         if judged.explanation.how == "lost":
             return self._unexplained(judged.explanation, ranges)
@@ -268,6 +270,12 @@ class Tracker:
         if name in self.state.held_objects and self.state.in_hand == name:
             self._move_object(name, judged.explanation, command, ranges)
         return self._integrate(judged.explanation, ranges)
+
+    def _uncover(self, held: HeldObject, motion: Motion) -> None:
+        """Open squares of the map that the held object leaves by a motion, and that another thing may share."""
+        lay = held.lying(held.first).possible if held.seen_on is None else held.seen_on
+        now = held.lying(motion.carry(held.polygon)).possible
+        self.state.occupancy.uncover(lay, now, held.since - 1)
 
     def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
         """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""
@@ -335,6 +343,7 @@ class Tracker:
             suspected_squares=state.suspected_squares - change.squares,
             completions=None,
             changed_at={**state.changed_at, **dict.fromkeys(change.squares, change_number)},
+            removed=state.removed + len(change.gone),
         )
 
     def _learn(self, judged: Judgement) -> None:
@@ -393,7 +402,7 @@ def _begun(state: TrackerState, made: Iterable[Observation], former: TrackerStat
     """Return a tracker with an empty map at the believed place; `made`: the observations whose places are kept."""
     been = (*state.been, *(observation.place for observation in made))
     begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-    return Tracker(replace(begun, former=former, unsteady=unsteady))
+    return Tracker(replace(begun, former=former, unsteady=unsteady, removed=state.removed))
 
 
 def _before_contradictions(state: TrackerState) -> TrackerState | None:

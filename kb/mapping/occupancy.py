@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from utak.geometry.counts.gibbs import Counts
 from utak.geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
 from utak.geometry.kernels.arrays import XY, Bools, Ints, Square
+from utak.geometry.raster.components import with_edge_neighbours
 from utak.kb.mapping.occupancy_odds import Fields, Forgotten, Grown, Logits, Odds
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
@@ -25,6 +26,7 @@ __all__ = ["FREE", "OCCUPIED", "OPEN"]
 SIGHT_RANGE = 24  # squares: what is seen from a place lies within so many columns and rows, at any orientation; derived
 GROWTH_MARGIN = 40  # squares by which the map grows beyond what is needed; convention
 
+MapPatch = tuple[int, int, Bools]  # west and south of a mask, map frame, and the mask: a Patch (kb.mapping.patch)
 ObservationKey = tuple[int | bytes, ...]  # all that an impression says, and where it was received
 
 
@@ -209,7 +211,7 @@ class OccupancyMap:
         touched = doubtful[self._where] & (self._weight > 0)
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
 
-    def withdraw_patch(self, patch: tuple[int, int, Bools]) -> None:
+    def withdraw_patch(self, patch: MapPatch) -> None:
         """Forget what was settled of the squares of a patch; see `withdraw`."""
         self.withdraw(np.flatnonzero(self.squares(*patch)).astype(np.int32))
 
@@ -227,9 +229,21 @@ class OccupancyMap:
         self.state[mask] = value
         self.settled_by[mask] = number
 
-    def declare_patch(self, patch: tuple[int, int, Bools], value: int, number: int) -> None:
+    def declare_patch(self, patch: MapPatch, value: int, number: int) -> None:
         """Settle the squares of a patch by other knowledge than counts; see `declare`."""
         self.declare(self.squares(*patch), value, number)
+
+    def uncover(self, lay: MapPatch, now: MapPatch, number: int) -> None:
+        """Open what was declared floor under a thing that was taken, where it has gone and another thing may reach in.
+
+        lay, now : the squares where it was taken and those that it covers now. number : of the declaration.
+        """
+        # Things may share squares: what stands right beside where it lay may reach into the squares at that rim.
+        own = self.squares(*lay)
+        beside = with_edge_neighbours((self.state == OCCUPIED) & ~own)
+        left = own & beside & (self.settled_by == number) & (self.state == FREE) & ~self.squares(*now)
+        if left.any():
+            self.withdraw(np.flatnonzero(left).astype(np.int32))
 
     # -- solving ---------------------------------------------------------------------------------
 

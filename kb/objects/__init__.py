@@ -8,9 +8,11 @@ parts           the parts of an outline, such as the legs of an L
 proportions     whether a rectangle is a square or a brick, as far as its extent is known
 held_object     an object that the robot has held: its outline, its place, and how exactly both are known
 movability      whether things can be moved, decided by kb/asp/movable.lp
+persistence     how likely things out of sight still lie where they lay, by kb/asp/persistence.lp
 touches         the colours that were felt, square by square
 
 Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit);
 `possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `movabilities`,
-`Movability`, `MotionHistory` (movability); `Touches` (touches).
+`Movability`, `MotionHistory` (movability); `persistences`, `Persistence`, `ChangesByOthers` (persistence);
+`Touches` (touches).
 """

@@ -26,9 +26,6 @@ class Kinds(NamedTuple):
 
     # Region -> {floor, verge, object or utak: confidence in percent}. A region of which nothing is derived is missing.
     kind: Mapping[str, Mapping[str, int]]
-    # Pairs of free regions that must be connected by floor that is not seen
-    hidden_passages: frozenset[tuple[str, str]]
-
     # Role -> the regions that are taken for it when the robot acts: bounds, wall, thing (kb/asp/taken.lp)
     taken: Mapping[str, frozenset[str]] = MappingProxyType({})
 
@@ -41,7 +38,7 @@ class Kinds(NamedTuple):
         return self.kind.get(region, {}).get(kind, 0)
 
 
-NO_KINDS = Kinds({}, frozenset())
+NO_KINDS = Kinds({})
 
 
 def counted_percent(case: str, measure: int) -> int:
@@ -104,8 +101,7 @@ def _interpreted(facts: Sequence[str], rules: tuple[Path, ...]) -> Kinds:
             usual = solve([INTERPRETATION], facts) or []
         counted, stated = _kinds_of(usual), _kinds_of(atom for atom in atoms if atom not in usual)
         kinds = counted | {region: _with_stated(counted.get(region, {}), stated[region]) for region in stated}
-    passages = (atom.arguments for atom in atoms if atom.match("hidden_passage", 2))
-    return Kinds(kinds, frozenset((str(one), str(other)) for one, other in passages))
+    return Kinds(kinds)
 
 
 def _kinds_of(atoms: Iterable[Any]) -> dict[str, dict[str, int]]:

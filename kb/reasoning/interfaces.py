@@ -23,12 +23,14 @@ from utak.kb.language.vocabulary import (
     CONFIDENCE_ARGUMENT,
     KIND_ARGUMENT,
     LENGTH_ARGUMENT,
+    MAP_REGION_ARGUMENT,
     PLAN_PREDICATES,
     RESUMED_STEPS,
     SETTLING_STEPS,
     SHAPE_CLASSES,
     TASK_PARAMETER_ARGUMENT,
     THING_ARGUMENT,
+    WHEREABOUTS_ARGUMENT,
     Signature,
 )
 
@@ -51,9 +53,12 @@ NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
 CLAIMED_RELATIONS = ("in", "beside", "joins")  # what claims relate two parameters by
+CHANCES_OF = ("may_be", "joined", "hidden", "loc")  # what chances.lp states of three arguments
+PLACE_CASE = word_argument("case", ("likely", "other", "open", "closed", "door", "verge"))  # where a thing may be
 PROPERTY_ARGUMENT = word_argument("property", PROPERTIES)
 RELATION_ARGUMENT = word_argument("relation", CLAIMED_RELATIONS)
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
+MEANING_ARGUMENTS = (PARAMETER_ARGUMENT, NODE_ARGUMENT)  # what a parameter means
 MOVER_ARGUMENT = pattern_argument("thing or utak", "o[0-9]+|utak|start", "o1")  # a thing of the task plan, or the robot
 Forms = Mapping[str, tuple[ArgumentType, ...]]  # compound terms: the types of their arguments, by name
 # The steps of a task plan.
@@ -87,6 +92,8 @@ FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
 EXCLUSIVE_QUESTIONS: Forms = {  # whose answers exclude each other
     **dict.fromkeys(("kind", "shape", "room"), (THING_ARGUMENT,)),
     "place": (TASK_PARAMETER_ARGUMENT,),
+    "passage": (MAP_REGION_ARGUMENT,),
+    "loc": (),
 }
 QUESTION_ARGUMENT = _compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
@@ -135,7 +142,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
         ("cut", 1): (REGION_ARGUMENT,),
         ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("hidden_passage", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
         ("counted_solid", 4): (CASE_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
         ("counted_object", 6): (CASE_ARGUMENT, *(AMOUNT_ARGUMENT,) * 5),
     },
@@ -168,6 +174,12 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("tried", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("movable", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
     },
+    "persistence": {
+        **{(name, 1): (NODE_ARGUMENT,) for name in ("thing", "watched", "looked_at_again")},
+        **{(name, 1): (AMOUNT_ARGUMENT,) for name in ("removed", "checked", "since_change")},
+        ("out_of_sight", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(name, 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT) for name in ("by_count", "persists")},
+    },
     "rooms": {
         ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("door", 2): (NECK_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -178,6 +190,19 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("convex", 3): (CONVEX_CORNER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
         ("excluded", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
+    },
+    "chances": {
+        ("unbound", 1): (TASK_PARAMETER_ARGUMENT,),
+        ("place", 4): (TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, PLACE_CASE, AMOUNT_ARGUMENT),
+        ("claimed", 3): (TASK_PARAMETER_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("next", 1): (WHEREABOUTS_ARGUMENT,),
+        ("touch", 4): (THING_ARGUMENT, THING_ARGUMENT, word_argument("felt", ("same", "unfelt")), CONFIDENCE_ARGUMENT),
+        ("whole", 1): (THING_ARGUMENT,),
+        ("supports", 3): (TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, AMOUNT_ARGUMENT),
+        ("between", 4): (MAP_REGION_ARGUMENT, NAME_ARGUMENT, NAME_ARGUMENT, AMOUNT_ARGUMENT),
+        ("unfelt", 3): (NAME_ARGUMENT, word_argument("breadth", ("slim", "broad")), AMOUNT_ARGUMENT),
+        ("stands", 4): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NAME_ARGUMENT, AMOUNT_ARGUMENT),
+        **{one: BELIEF_PREDICATES[one].arguments for one in [(name, 3) for name in CHANCES_OF] + [("plug", 2)]},
     },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -229,8 +254,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
             CANDIDATE_ARGUMENT,
             word_argument("claim", (*PROPERTIES, *CLAIMED_RELATIONS)),
         ),
-        ("unmovable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("measurable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
+        **{(name, 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT) for name in ("unmovable", "measurable")},
     },
     "task": {
         ("horizon", 1): (AMOUNT_ARGUMENT,),
@@ -238,23 +262,18 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
         ("goal", 1): (GOAL_ARGUMENT,),
-        ("wish", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
-        ("missed", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(name, 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT) for name in ("wish", "missed")},
         ("fulfils", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT),
         ("rank", 2): (MOVER_ARGUMENT, AMOUNT_ARGUMENT),
         ("estimate", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, AMOUNT_ARGUMENT),
         ("hoped", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
         ("lies", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("connects", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
-        ("width", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
-        ("relief", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(name, 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT) for name in ("width", "relief")},
         ("door", 2): (PLAN_DOOR_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("bound", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
-        ("may_mean", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
-        ("meant_before", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
+        **{(name, 2): MEANING_ARGUMENTS for name in ("bound", "may_mean", "meant_before", "meaning")},
         ("about", 2): (GOAL_ARGUMENT, PARAMETER_ARGUMENT),
         ("order", 2): (PARAMETER_ARGUMENT, AMOUNT_ARGUMENT),
-        ("meaning", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
         ("not_meant", 2): (MOVER_ARGUMENT, GOAL_ARGUMENT),
         ("asked_for", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("size", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
@@ -337,19 +356,24 @@ PLAN_FACTS = frozenset(
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "movable": frozenset({("moved", 1), ("kind", 3)}),
     "taken": frozenset({("kind", 3), ("extent", 2), ("touched", 2), ("longest", 1)}),
+    "chances": frozenset(USER_RULE_INTERFACES["chances"]) - {("supports", 3)},
+    "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
+    - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
-MADE_LAST = frozenset({("may_be", 3), ("may_be", 2), ("joined", 3), ("joined", 2)})
+MADE_LAST = frozenset(
+    {(name, arity) for name in CHANCES_OF for arity in (2, 3)} | {("plug", 1), ("plug", 2), ("stretch", 5)}
+)
 # By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
 # nothing but the world model bind the task plan; elsewhere they would leave no answer.
 WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES) - MADE_LAST
 WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     name: known - frozenset(USER_RULE_INTERFACES[name])
     for name, known in {
-        "movable": frozenset({("shape", 3), ("colour", 3)}),
+        **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        "reconciliation": WORLD_PREDICATES,
+        **dict.fromkeys(("reconciliation", "chances"), WORLD_PREDICATES),
         "task": WORLD_PREDICATES,
         "agenda": WORLD_PREDICATES,
     }.items()

@@ -1,32 +1,56 @@
-"""Chances of what may be: where things are that the task names and nobody saw, which pieces are one (chances.lp).
+"""Chances of what may be (chances.lp): where things and the robot are, which pieces are one, what joins floors.
 
 Geometry measures; the encoding makes chances of it, by what was counted.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from pathlib import Path
 
 import numpy as np
 
 from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.language.atoms import atom_parts
 from utak.kb.mapping.occupancy import OPEN
+from utak.kb.perception.frame import CENTRE
 from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
+from utak.kb.task.apart import joints
 from utak.kb.task.binding import Reconciliation
 from utak.kb.task.described import claim_facts
 from utak.kb.task.pieces import touching_pieces
+from utak.kb.task.stretches import stretches
 from utak.kb.task.task import Task
-from utak.kb.world.model import VERGE_NODE, Node, WorldModel
+from utak.kb.world.facts import Places, facts_for_rules
+from utak.kb.world.model import VERGE_NODE, Node, WorldModel, hundredths
 from utak.kb.world.place_names import WAKING_ROOM
 from utak.kb.world.rooms import NO_ROOM, Rooms
 
 CHANCES = KB_ENCODINGS / "chances.lp"
 
 
-def alternatives(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> tuple[str, ...]:
-    """Return may_be/3 and joined/3 as facts without full stops."""
-    facts = [*place_facts(task, model, rooms, reconciled)]
+def alternatives(
+    task: Task, model: WorldModel, places: Places, reconciled: Reconciliation, rules: tuple[Path, ...] = ()
+) -> tuple[str, ...]:
+    """Return may_be/3, joined/3, hidden/3, plug/2, stretch/5 and loc/3 as facts without full stops."""
+    facts = [*place_facts(task, model, places.rooms, reconciled)]
     facts += [fact for piece in touching_pieces(model) for fact in piece.facts]
-    return tuple(str(atom) for atom in solve([CHANCES], facts) or ()) if facts else ()
+    facts += [joint.fact for joint in joints(model)]
+    unfelt = stretches(model)
+    facts += [stretch.fact for stretch in unfelt]
+    facts += standing_facts(model)
+    facts += facts_for_rules(CHANCES.stem, rules, model, places) if facts else ()
+    found = [str(atom) for atom in solve([CHANCES, *rules], facts) or ()] if facts else []
+    return (*found, *(stretch.rectangle(model) for stretch in unfelt))
+
+
+def may_be(facts: Iterable[str]) -> dict[str, dict[str, int]]:
+    """Return, by parameter of the task that means nothing seen, the places where it may be with percent, of facts."""
+    found: dict[str, dict[str, int]] = {}
+    for fact in facts:
+        name, parts = atom_parts(fact)
+        if name == "may_be":
+            found.setdefault(parts[0], {})[parts[1]] = int(parts[2])
+    return found
 
 
 def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconciliation) -> Iterator[str]:
@@ -44,21 +68,28 @@ def place_facts(task: Task, model: WorldModel, rooms: Rooms, reconciled: Reconci
         yield from (f"place({x},{place})" for place in places)
         for node in free:
             case = "likely" if (x, node.name) in may_turn_out else "other"
-            yield f"place({x},{node.name},{case},{_likeness(node, x, task)})"
+            yield f"place({x},{node.name},{case},{_likeness(node, x, task, model)})"
     yield from _claimed_rooms(unbound, task, rooms, bound)
 
 
-def _likeness(node: Node, parameter: str, task: Task) -> int:
-    """Return with how many percent a node is an object as the task claims, as far as it was seen and felt."""
-    share = node.confidence / 100
-    for claim in task.claims:
-        name, *values = (str(part) for part in (claim.fact.name, *claim.fact.args))
-        if values[0] != parameter or name not in ("shape", "colour"):
-            continue
-        likely = node.shape if name == "shape" else {node.colour or values[1]: 100}  # unfelt: any colour
-        held = likely.get(values[1], 0)
-        share *= max(held, 100 - claim.confidence) / 100
-    return round(100 * share)
+def standing_facts(model: WorldModel) -> Iterator[str]:
+    """Yield the squares in which the robot may stand, for kb/asp/chances.lp."""
+    standing = model.standing
+    if standing is None or standing.case == "anew":  # from where it woke it stands anywhere
+        return
+    for (x, y), share in sorted(standing.shares.items()):
+        east, north = standing.frame.place_to_utak(x + CENTRE[0], y + CENTRE[1])
+        yield f"stands({hundredths(east)},{hundredths(north)},{standing.case},{round(1000 * share)})"
+
+
+def _likeness(node: Node, parameter: str, task: Task, model: WorldModel) -> int:
+    """Return with how many percent map completions show that a node has the shape that the task claims."""
+    # Where it claims none: with how many percent the node is an object.
+    claimed = (claim.fact for claim in task.claims if claim.fact.name == "shape")
+    shapes = sorted(str(fact.args[1]) for fact in claimed if str(fact.args[0]) == parameter)
+    if not shapes:
+        return node.confidence
+    return round(100 * float(model.likely(shapes[0])[model.mask(node.patch)].max(initial=0.0)))
 
 
 def _unseen_places(model: WorldModel, rooms: Rooms) -> Iterator[str]:

@@ -17,8 +17,8 @@ from utak.kb.language.vocabulary import (
 from utak.kb.three_valued.values import NEW, NO_NUMBER, numbers, to_clingo
 
 FactRow = tuple[Symbol, ...]  # the arguments of one fact
-# These are about parameters and the plan, not about things.
-TASK_SIGNATURES = frozenset({("parameter", 1), ("bound", 2), ("may_be", 3), *PLAN_PREDICATES})
+# These are about parameters, the plan and squares, not about things.
+TASK_SIGNATURES = frozenset({("parameter", 1), ("bound", 2), ("may_be", 3), ("loc", 3), ("loc", 2), *PLAN_PREDICATES})
 NEW_THING, FULL_CONFIDENCE = to_clingo(NEW), Number(100)
 
 

@@ -27,7 +27,6 @@ from utak.kb.world.rooms import NO_ROOM, Door, Rooms
 
 MIDDLE_MARGIN = 1.0  # squares: each side of an outline lies less than that within its squares, so its middle does, too
 MAX_DOOR_WIDTH = math.hypot(MAX_TABLE_SIDE, MAX_TABLE_SIDE)  # squares: no line on a table is longer; derived
-Box = tuple[float, float, float, float]  # west, south, east, north; in squares, frame of the view's arrays
 
 
 class Widths(NamedTuple):
@@ -40,6 +39,22 @@ class Widths(NamedTuple):
 def measured(chance: float) -> int:
     """Return a chance as it was measured, 0 to 1, in percent: neither 0 nor 100."""
     return min(max(int(100 * chance), 1), 99)
+
+
+class _Spread(NamedTuple):
+    """The shares that squares of a part of the view have of where a point may be."""
+
+    south: int  # the row and the column of the part's square [0, 0]
+    west: int
+    weights: Floats  # 1 together, or less: the rest is outside of the view
+
+    @property
+    def mean(self) -> XY:
+        """The mean of where it may be, in squares, frame of the view's arrays."""
+        rows, columns = np.indices(self.weights.shape)
+        total = max(float(self.weights.sum()), 1e-9)
+        x, y = (float((at * self.weights).sum()) / total + 0.5 for at in (columns, rows))
+        return self.west + x, self.south + y
 
 
 class _Body(NamedTuple):
@@ -83,18 +98,26 @@ class Chances:
     def rooms_of(self, node: Node | None) -> list[tuple[int, int]]:
         """Return the rooms in which the middle of an object may lie, or the robot (None), with percent, by number."""
         # The room with the greatest share has what was counted for such shares; the others share what that leaves.
-        box, exact = self._robot_box() if node is None else self._middle_box(node)
-        shares, is_clear = self._shares(box)
+        middle, exact = self._robot_middle() if node is None else self._middle(node)
+        shares, is_clear = self._shares(middle)
         shares.pop(NO_ROOM, None)
         if not shares:
             return []
         if exact and self.is_sure and is_clear and len(shares) == 1 and all(map(self._is_settled, shares)):
-            return [(room, 100) for room in shares]
+            return [(room, self._persisting(100, node)) for room in shares]
         whole, first = sum(shares.values()), min(shares, key=lambda room: (-shares[room], room))
         sure = self._rate("in_robot" if node is None else "in_thing", measured(shares[first] / whole))
         left = whole - shares[first]
         found = {room: int((100 - sure) * share / left) for room, share in shares.items() if room != first}
-        return sorted((room, share) for room, share in (*found.items(), (first, sure)) if share > 0)
+        now = ((room, self._persisting(share, node)) for room, share in (*found.items(), (first, sure)))
+        return sorted((room, share) for room, share in now if share > 0)
+
+    @staticmethod
+    def _persisting(percent: int, *nodes: Node | None) -> int:
+        """Return the percent of what was so when things were last in sight, as far as they still lie there."""
+        for node in nodes:
+            percent = percent if node is None else percent * node.persists // 100
+        return percent
 
     def _is_settled(self, room: int) -> bool:
         """Return whether no door can part a room: none has it on both sides, and all in it and about it is settled."""
@@ -104,42 +127,47 @@ class Chances:
         settled = self._surely_free | self._surely_occupied
         return not at_edge and bool(settled[about].all()) and all(d.sides != (room, room) for d in self.rooms.doors)
 
-    def _robot_box(self) -> tuple[Box, bool]:
-        """Return where the robot may be, and whether it is surely there."""
+    def _robot_middle(self) -> tuple[_Spread, bool]:
+        """Return in which squares the robot may stand, and whether it is surely there."""
         height, width = self.rooms.labels.shape
         if self.model.lost:
-            return (0.0, 0.0, float(width), float(height)), False
-        return self.model.place_box, True
+            return _Spread(0, 0, np.full((height, width), 1 / (height * width))), False
+        placed = {self.model.view.locate(x, y): share for (x, y), share in self.model.robot_squares.items()}
+        rows, columns = zip(*placed, strict=True)
+        south, west = max(min(rows), 0), max(min(columns), 0)
+        weights = np.zeros((max(min(max(rows) + 1, height) - south, 0), max(min(max(columns) + 1, width) - west, 0)))
+        for (row, column), share in placed.items():
+            if 0 <= row < height and 0 <= column < width:
+                weights[row - south, column - west] = share
+        return _Spread(south, west, weights), True
 
-    def _middle_box(self, node: Node) -> tuple[Box, bool]:
+    def _middle(self, node: Node) -> tuple[_Spread, bool]:
         """Return where the middle of an object may be, whatever open squares it covers."""
         body = self._body(node)
         sides = [_ends_of_mean(body, axis) for axis in (1, 0)]
         (west, east), (south, north) = (
             (start + low, start + high) for start, (low, high) in zip((body.west, body.south), sides, strict=True)
         )
-        margin = MIDDLE_MARGIN
-        return (west - margin, south - margin, east + margin, north + margin), bool(body.sure.any())
+        height, width = self.rooms.labels.shape
+        columns, along = _overlaps(west - MIDDLE_MARGIN, east + MIDDLE_MARGIN, width)
+        rows, up = _overlaps(south - MIDDLE_MARGIN, north + MIDDLE_MARGIN, height)
+        return _Spread(rows.start, columns.start, up[:, None] * along[None, :]), bool(body.sure.any())
 
-    def _shares(self, box: Box) -> tuple[dict[int, float], bool]:
-        """Return the share of a box that each room takes up, and whether the box is surely within rooms."""
-        labels = self.rooms.labels
-        height, width = labels.shape
-        columns, along = _overlaps(box[0], box[2], width)
-        rows, up = _overlaps(box[1], box[3], height)
-        weights = up[:, None] * along[None, :]
+    def _shares(self, middle: _Spread) -> tuple[dict[int, float], bool]:
+        """Return the share that each room has of where something may be, and whether that is surely within rooms."""
+        labels, (south, west, weights) = self.rooms.labels, middle
+        rows, columns = (slice(at, at + size) for at, size in zip((south, west), weights.shape, strict=True))
         inside, near = labels[rows, columns], self.rooms.doorways[rows, columns]
         counts = np.bincount(inside.ravel(), (weights * np.where(near, 0.5, 1.0)).ravel())
         shares = {room: float(share) for room, share in enumerate(counts.tolist()) if share > 0}
         for room, share in enumerate(np.bincount(inside[near], weights[near]).tolist()):
-            other = self._behind_door(room, box)
+            other = self._behind_door(room, middle.mean)
             shares[other] = shares.get(other, 0.0) + share / 2  # near a door: as likely on its other side
         outside = 1.0 - sum(shares.values())
         return {room: share for room, share in shares.items() if share > 0}, not near.any() and outside < 1e-9
 
-    def _behind_door(self, room: int, box: Box) -> int:
+    def _behind_door(self, room: int, middle: XY) -> int:
         """Return the room on the other side of the nearest door of a room; the room itself for none."""
-        middle = (box[0] + box[2]) / 2, (box[1] + box[3]) / 2
         doors = [door for door in self.rooms.doors if room in door.sides]
         if not doors:
             return room
@@ -168,7 +196,8 @@ class Chances:
         if chance > 0:
             between = "robot" if name == ROOT_NODE else "verge" if other == VERGE_NODE else "things"
             case = f"adjacent_{between}{'' if self.is_sure else '_unsure'}"
-            yield name, other, 100 if certain else self._rate(case, measured(chance))
+            share = 100 if certain else self._rate(case, measured(chance))
+            yield name, other, self._persisting(share, self.model.object(name), self.model.object(other))
 
     def _body(self, node: Node) -> _Body:
         """Return where an object may be: its squares, and open ones beside them."""

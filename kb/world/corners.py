@@ -3,7 +3,8 @@
 The corner furthest towards any side is a corner of the convex hull of the floor, so only those are found.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ import numpy as np
 import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools, Square
+from utak.geometry.raster.components import components
 from utak.kb.mapping.occupancy import OCCUPIED
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.perception.regions import label_of
@@ -66,6 +68,13 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
 
 def _convex_corners(floor: Bools) -> list[Corner]:
     """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it."""
+    owner = _end_squares(floor)
+    points = sorted(set(_hull(owner).coords))
+    return [Corner((x, y), owner[round(x), round(y)], _wall_normals(floor, (x, y), owner)) for x, y in points]
+
+
+def _end_squares(floor: Bools) -> dict[Square, Square]:
+    """Return the grid points at the ends of the rows of a mask, each with a square of it that has this corner."""
     rows = np.flatnonzero(floor.any(axis=1))
     first = floor[rows].argmax(axis=1)
     last = floor.shape[1] - 1 - floor[rows, ::-1].argmax(axis=1)
@@ -74,14 +83,19 @@ def _convex_corners(floor: Bools) -> list[Corner]:
         for height in (row, row + 1):
             owner[west, height] = (west, row)
             owner[east + 1, height] = (east, row)
-    ring = shapely.convex_hull(shapely.multipoints(sorted(owner))).exterior
-    points = sorted(set(ring.coords))
-    return [Corner((x, y), owner[round(x), round(y)], _wall_normals(ring, (x, y))) for x, y in points]
+    return owner
 
 
-def _wall_normals(ring: shapely.LinearRing, point: XY) -> tuple[XY, XY] | None:
-    """Return the outward unit normals of the two walls at a corner of a convex ring, in the ring's frame."""
-    # None where both walls lie along the grid, or where they are nearly one wall.
+def _hull(points: Iterable[Square]) -> shapely.LinearRing:
+    """Return the convex hull of some points, not all on a line, as a ring."""
+    return shapely.convex_hull(shapely.multipoints(sorted(points))).exterior
+
+
+def _wall_normals(floor: Bools, point: XY, owner: Mapping[Square, Square]) -> tuple[XY, XY] | None:
+    """Return the outward unit normals of the two walls at a corner of the convex hull of a mask, in its frame."""
+    # None where both walls lie along the grid, or where they are nearly one wall. A wall lies along the floor about its
+    # corner: the hull of all floor leads on to that of other rooms, past no wall.
+    ring = _hull(_end_squares(_floor_about(floor, owner[round(point[0]), round(point[1])])))
     along, length = ring.project(shapely.Point(point)), ring.length
     ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 8)) % length) for way in (-1, 1)]
     steps = np.array([(end.x - point[0], end.y - point[1]) for end in ends])
@@ -91,3 +105,13 @@ def _wall_normals(ring: shapely.LinearRing, point: XY) -> tuple[XY, XY] | None:
     (ax, ay), (bx, by) = steps / np.hypot(*steps.T)[:, None]
     normals = (-turn * ay, turn * ax), (turn * by, -turn * bx)
     return normals if abs(normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]) > MIN_CORNER_SINE else None
+
+
+def _floor_about(floor: Bools, square: Square) -> Bools:
+    """Return the floor within WALL_SAMPLE_LENGTH rows and columns of a square of it that hangs together with that."""
+    (column, row), reach = square, math.ceil(WALL_SAMPLE_LENGTH)
+    window = tuple(slice(max(at - reach, 0), at + reach + 1) for at in (row, column))
+    labels = components(floor[window]).labels
+    about = np.zeros_like(floor)
+    about[window] = labels == labels[row - window[0].start, column - window[1].start]
+    return about

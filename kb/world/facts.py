@@ -182,6 +182,7 @@ def _object_facts(node: Node, model: WorldModel) -> Iterator[str]:
     yield f"offset({name},{hundredths(east)},{hundredths(north)})"
     yield from appearance_facts(node)
     yield f"movable({name},{round(node.movable * node.confidence / 100)})"
+    yield from [f"persists({name},{node.persists})"] * (node.persists < 100)
 
 
 def _part_facts(node: Node, model: WorldModel) -> Iterator[str]:

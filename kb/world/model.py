@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from utak.geometry.kernels.arrays import XY, Bools, Labels, Square
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Labels, Square
 from utak.geometry.raster.components import with_edge_neighbours
+from utak.kb.localisation.standing import Standing
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
 from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.mapping.patch import Patch
@@ -63,6 +64,8 @@ class Node:
     support: tuple[int, ...] = ()  # Numbers of the impressions, from 0, that settled its squares, ascending
     movable: int = 100  # Percent of belief that it can be moved, if it is an object, by kb/asp/movable.lp
     felt_first: bool = False  # Whether it is felt before it is moved: it may be a piece of wall (kb/asp/movable.lp)
+    persists: int = 100  # Percent of belief that it still lies where it lay, by kb/asp/persistence.lp
+    looked_at_again: bool = False  # Whether it is looked at again before a task is done that is about it, by the same
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive
@@ -103,6 +106,7 @@ class WorldModel:
     # How far from the believed point the robot may have woken in its square, in squares, map frame; the first two are
     # at most 0, the last two at least 0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    standing: Standing | None = None  # The squares in which the robot may stand; None: in that of its place
     imagined: CompletionSummary = NO_COMPLETION_SUMMARY  # Completions: sampled maps that agree with all counts
     # Floor of the map without the moved objects, which these may cover now; None while nothing was moved
     floor_under_moved: Bools | None = None
@@ -131,6 +135,18 @@ class WorldModel:
             rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
             mask &= np.hypot(columns + 0.5 - x, rows + 0.5 - y) * self.spread <= MAX_SQUARE_SHIFT
         return mask
+
+    def likely(self, shape: str) -> Floats:
+        """Return the probability that each square belongs to an isolated object of a class: (rows, columns) float."""
+        if shape not in self._likely:
+            likely = self.imagined.likely(shape)
+            self._likely[shape] = likely if likely.size else np.zeros(self.labels.shape)  # none were drawn
+        return self._likely[shape]
+
+    @cached_property
+    def _likely(self) -> dict[str, Floats]:
+        """The same by class, for those that were asked for."""
+        return {}
 
     @cached_property
     def told(self) -> Bools:
@@ -213,6 +229,13 @@ class WorldModel:
         west, south, east, north = self.leeway
         far = self.spread * math.dist(self.place, self.frame.origin)
         return x + west - far, y + south - far, x + east + far, y + north + far
+
+    @property
+    def robot_squares(self) -> Mapping[Square, float]:
+        """The squares in which the robot may stand, map frame, each with its share of the likelihood."""
+        if self.standing is None or not self.standing.shares:
+            return {(math.floor(self.place[0]), math.floor(self.place[1])): 1.0}
+        return self.standing.shares
 
     @property
     def place_on_view(self) -> XY:

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from utak.geometry.kernels.arrays import Bools, Labels, Square
 from utak.geometry.raster.components import bounding_boxes
+from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
 from utak.kb.objects.movability import MotionHistory, movabilities
+from utak.kb.objects.persistence import Persistence, persistences
 from utak.kb.objects.proportions import corrected_shape
 from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from utak.kb.objects.touches import Touches
@@ -276,6 +278,22 @@ def with_movability(objects: Iterable[Node], rules: tuple[Path, ...] = ()) -> tu
     tried = [MotionHistory(n.name, n.confidence, max(n.patch.mask.shape), n.moved, n.stuck) for n in nodes]
     found = movabilities(tried, rules, (fact for node in nodes for fact in appearance_facts(node)))
     return tuple(replace(n, movable=found[n.name].percent, felt_first=found[n.name].felt_first) for n in nodes)
+
+
+def with_persistence(objects: Iterable[Node], memory: TrackerState, rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
+    """Return the objects with what kb/asp/persistence.lp and users' rules say of where they are now."""
+    nodes = tuple(objects)
+    found = persistences(
+        {node.name: memory.frame.place_to_utak(*node.patch.centre) for node in nodes},
+        (observation.place for observation in memory.observations),
+        memory.changes,
+        rules,
+        (fact for node in nodes for fact in appearance_facts(node)),
+    )
+    now = (found.get(node.name, Persistence()) for node in nodes)
+    return tuple(
+        replace(node, persists=one.percent, looked_at_again=one.again) for node, one in zip(nodes, now, strict=True)
+    )
 
 
 def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:

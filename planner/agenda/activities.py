@@ -129,13 +129,18 @@ class Activities:
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(turn),
             "settle": self._nothing_settles,
-            "go": lambda: self._own.go(turn, self.errands.intention),
+            "go": lambda: self._go(turn),
             "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
             "blame": lambda: _added(last, self._clearer.blame(turn.situation)),
             "doubt": lambda: self._doubt(activity.subject, last, turn),
         }
         return doing[activity.kind]()
+
+    def _go(self, turn: StageTurn) -> Decision:
+        """Return the next command to where the robot shall be, or to tell what that is about; or the verdict."""
+        meant = {str(term) for goal in turn.stage.own for term in goal.args[1:]}
+        return self._transporter.measured(meant, self._own.go(turn, self.errands.intention), turn)
 
     def _towards_first(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command towards the first of some goals for objects, or what it came to."""

@@ -12,8 +12,8 @@ from utak.geometry.kernels.arrays import XY
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
 from utak.kb.reasoning.user_rules import rules_reach
-from utak.kb.task.alternatives import alternatives
-from utak.kb.task.binding import NOTHING_RECONCILED, Reconciliation, as_well_by_parameter, reconcile
+from utak.kb.task.alternatives import alternatives, may_be
+from utak.kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
 from utak.kb.task.described import FirstPlaces
 from utak.kb.task.task import Task
 from utak.kb.tracing.decisions import record_decisions
@@ -62,7 +62,6 @@ class Decider:
         self.executor = PlanExecutor(pull)
         self._verifier = Verifier()
         self.alternatives: tuple[str, ...] = ()  # what may be besides the tree of nodes, as facts
-        self._reconciled = NOTHING_RECONCILED
         self._first_places = FirstPlaces()
         self._activities = Activities(task, pull)
         self._intention = self._activities.errands.intention
@@ -91,7 +90,6 @@ class Decider:
         """Return what to do after an impression."""
         self._activities.keeper.note(model)
         decision = self._decided(model, track)
-        self.alternatives = alternatives(self.task, model, self.rooms, self._reconciled)
         if decision.command is not None or decision.verdict == TaskVerdict.DONE:
             return decision
         return self._blamed_on_constraints(decision, model, track)
@@ -114,6 +112,7 @@ class Decider:
             carried=carried,
             renamed=renamed,
             near_misses=reconciled.near_misses,
+            may_be=may_be(self.alternatives),
         )
         if any(goal.name == "not_through" for goal in self.task.goals) or rules_reach(TASK_ENCODING.stem, self.rules):
             possible = possible_doors(model, self.rooms, self.rules)
@@ -250,5 +249,6 @@ class Decider:
         if unmoved:  # the other one of two things is moved
             self._unmoved |= unmoved
             return self._reconcile(cost_maps)
-        self.bound, self._reconciled = reconciled.binding, reconciled
+        self.bound = reconciled.binding
+        self.alternatives = alternatives(self.task, model, places, reconciled, rules)
         return reconciled

@@ -20,8 +20,8 @@ from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
 from utak.planner.deciding.verification import (
     check_elsewhere,
+    look_again,
     look_at_contradiction,
-    look_since_contradiction,
     robot_square,
 )
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
@@ -110,8 +110,8 @@ class OwnGoals:
         situation, model = turn.situation, turn.situation.model
         contradiction = look_at_contradiction(situation)
         doubts = [] if contradiction is None else [contradiction]
-        meant = (situation.object_of(str(goal.args[0])) for goal in turn.stage.goals)
-        doubts += filter(None, (look_since_contradiction(node, situation) for node in meant if node is not None))
+        meant = (situation.object_of(str(term)) for goal in turn.stage.goals for term in goal.args)
+        doubts += filter(None, (look_again(node, situation) for node in meant if node is not None))
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
             node = situation.object_of(x)

@@ -1,20 +1,17 @@
 """Subgoals: go where a goal holds; while that is not known, look where what is missing may be."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from utak.geometry.kernels.arrays import Floats
-from utak.kb.mapping.object_heat import chance_by_seen_squares
 from utak.kb.task.binding import Reconciliation
-from utak.kb.world.model import Node, WorldModel
 from utak.kb.world.rooms import rooms_of
 from utak.planner.goals.robot_goals import Destination
 from utak.planner.navigation.fewest_moves import MOVE_COST, SQUARE_COST
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import one_move_squares
-from utak.planner.screen.projection import CostMaps, SquareIndices, dilate
+from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.sights import frontiers
 from utak.planner.sights.viewpoints import MOST_LIKELY, TO_TAKE, Approach, inspection, sightings
 from utak.planner.situation import Situation
@@ -25,17 +22,7 @@ UNEXPLAINED_BONUS = -10.0  # squares: price of a look at a boundary that no stra
 UNEXPLAINED_CHANCE = 4  # percent that such a boundary hides what is missing
 LIKELY_WALL_CHANCE = 2  # percent that a boundary that is likely wall hides it
 PASSAGE_CHANCE = 20  # percent that floor seen beyond an unknown passage holds it
-ANY_SHAPE_CHANCE = 0.4  # probability that an object is the one looked for, when its shape is not told
 DISTANT_LOOK_SHARE = 0.7  # of the promise of a look that ends right before an object, that of one from afar
-MIN_OBJECT_CHANCE = 3  # percent, of every object that is not known to be another one
-
-
-class Candidate(NamedTuple):
-    """Something seen that may be what is looked for."""
-
-    # The flat indices (row * columns + column) on the arrays of the view of the squares where it lies, (n,)
-    squares: SquareIndices
-    subgoal: Subgoal  # a look at it; its chance is the percent of belief that it is what is looked for
 
 
 def subgoals_towards(
@@ -49,14 +36,14 @@ def subgoals_towards(
         for other in where[1:]:
             squares = np.intersect1d(squares, other.squares)
         return [Subgoal(SubgoalKind.ATTAIN, squares, "the way to the goal is known")]
-    likely = _object_heat(situation, reconciled)
-    things = _doubtful_objects(situation, reconciled, likely, to)
+    things = _doubtful_objects(situation, reconciled, to)
     subgoals = [Subgoal(SubgoalKind.EXPLORE, *look) for d in missing for look in d.viewpoints]
     if any(_is_surely_reached(subgoal, cost_maps) for subgoal in subgoals):
-        return [*subgoals, *(thing.subgoal for thing in things)]
+        return [*subgoals, *things]
+    unseen = _unseen_share(situation, reconciled)
+    likely = _object_heat(situation, reconciled, unseen)
     places = [] if likely is None else _likely_places(cost_maps, likely, to)
-    subgoals += [candidate.subgoal for candidate in (*things, *places)]
-    return [*subgoals, *_looks_at_the_unseen(cost_maps, chance_of_none([*things, *places]), to)]
+    return [*subgoals, *things, *places, *_looks_at_the_unseen(cost_maps, unseen, to)]
 
 
 def contact_subgoals(situation: Situation) -> list[Subgoal]:
@@ -84,47 +71,34 @@ def island_contacts(situation: Situation) -> list[Subgoal]:
     return subgoals
 
 
-def chance_of_none(candidates: Sequence[Candidate]) -> float:
-    """Return the probability, 0 to 1, that none of some candidates is what is looked for; 1 for no candidates."""
-    none, counted = 1.0, np.zeros(0, np.int64)
-    for squares, subgoal in candidates:
-        if not np.isin(squares, counted).any():
-            none *= 1 - subgoal.chance / 100
-        counted = np.union1d(counted, squares)
-    return none
-
-
-def _doubtful_objects(
-    situation: Situation, reconciled: Reconciliation, likely: Floats | None, to: Approach
-) -> list[Candidate]:
-    """Return the objects of the world model that may be what is looked for, each with a look at it or a touch of it."""
+def _doubtful_objects(situation: Situation, reconciled: Reconciliation, to: Approach) -> list[Subgoal]:
+    """Return a look at each object of the world model that may be what is looked for, or a touch of it."""
     cost_maps, model = situation.cost_maps, situation.model
     found = []
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is None or x not in reconciled.hypothesised:
             continue
-        chance = ANY_SHAPE_CHANCE if likely is None else _chance(node, likely, model)
-        look = inspection(cost_maps, node, chance, to) if node.open else frontiers.touch_viewpoint(cost_maps, node)
-        what = f"{look.what}: it may be {x}"
-        squares = np.flatnonzero(model.mask(node.patch))
-        percent = max(MIN_OBJECT_CHANCE, min(MOST_LIKELY, round(100 * chance)))
-        found.append(Candidate(squares, Subgoal(SubgoalKind.INSPECT, look.squares, what, percent)))
-    return [candidate for candidate in found if len(candidate.subgoal.squares)]
+        percent = max(1, min(MOST_LIKELY, situation.may_be.get(x, {}).get(name, 0)))
+        look = (
+            inspection(cost_maps, node, percent / 100, to) if node.open else frontiers.touch_viewpoint(cost_maps, node)
+        )
+        found.append(Subgoal(SubgoalKind.INSPECT, look.squares, f"{look.what}: it may be {x}", percent))
+    return [subgoal for subgoal in found if len(subgoal.squares)]
 
 
-def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
-    """Return the probability, 0 to 1, that an object is what is looked for, by map completions."""
-    mask = model.mask(node.patch)
-    shown = float(likely[mask].max())
-    cut = (dilate(mask, 1) & ~model.view.seen).any()
-    return max(shown, float(chance_by_seen_squares(mask.sum()))) if cut else shown
+def _unseen_share(situation: Situation, reconciled: Reconciliation) -> float:
+    """Return the probability, 0 to 1, that what is looked for is none of the objects that were seen."""
+    objects = {node.name for node in situation.model.objects}
+    may_be = (situation.may_be[x] for x in reconciled.hypothesised if x in situation.may_be)
+    shares = [sum(percent for place, percent in places.items() if place not in objects) for places in may_be]
+    return max(shares, default=100) / 100
 
 
-def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Candidate]:
-    """Return the places where map completions show what is looked for, with looks at them; [] for none."""
+def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Subgoal]:
+    """Return looks at the places where map completions show what is looked for; [] for none."""
     seen = sightings(cost_maps, likely, "what is looked for may be there", to)
-    return [Candidate(squares, Subgoal(SubgoalKind.INSPECT, *look)) for squares, look in seen]
+    return [Subgoal(SubgoalKind.INSPECT, *look) for _, look in seen]
 
 
 def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
@@ -154,16 +128,20 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
     return [*explored, *settled, *passages]
 
 
-def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | None:
+def _object_heat(situation: Situation, reconciled: Reconciliation, unseen: float) -> Floats | None:
     """Return the probability that a square belongs to the shape looked for; None when no shape is told."""
     wanted = sorted(
-        str(claim.fact.args[1])
+        (str(claim.fact.args[1]), str(claim.fact.args[0]))
         for claim in situation.task.claims
         if claim.fact.name == "shape" and str(claim.fact.args[0]) in reconciled.hypothesised
     )
     if not wanted:
         return None
-    return situation.model.imagined.likely(wanted[0])
+    (shape, x), model = wanted[0], situation.model
+    likely = unseen * model.likely(shape)
+    for node in model.objects:
+        likely[model.mask(node.patch)] = situation.may_be.get(x, {}).get(node.name, 0) / 100
+    return likely
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:

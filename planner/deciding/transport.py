@@ -4,7 +4,7 @@ planner.carrying.plan_executor says what to do with the object. Here it is settl
 infeasibility certificate proves.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -58,6 +58,7 @@ class Transporter:
         self._presser, self._passages = Presser(), PassageTrials()
         # How many squares had been looked from when the robot went to see where an object must end, until one is added.
         self._looked_before = 0
+        self._is_measuring = False  # whether the last command was to measure what a parameter may mean
         self._has_taken_along = False  # whether an object that shut the robot in was taken along to look
 
     def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
@@ -181,10 +182,18 @@ class Transporter:
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
-        like = [name for parameter, name in turn.reconciled.measurable if parameter == x and decision.verdict]
-        seen = (thing for thing in turn.situation.model.objects if thing.name in like)
-        pushes = (self._measure(thing, turn) for thing in seen)
-        return next((push for push in pushes if push is not None), decision)
+        return self.measured([x], decision, turn)
+
+    def measured(self, parameters: Collection[str], decision: Decision, turn: StageTurn) -> Decision:
+        """Return a decision; in place of a verdict the next push to measure what parameters may mean."""
+        goes_on = self._is_measuring and isinstance(decision.command, Release)
+        push = None
+        if decision.verdict not in (None, TaskVerdict.DONE) or goes_on:
+            like = [name for parameter, name in turn.reconciled.measurable if parameter in parameters]
+            seen = (thing for thing in turn.situation.model.objects if thing.name in like)
+            push = next(filter(None, (self._measure(thing, turn) for thing in seen)), None)
+        self._is_measuring = push is not None
+        return push or decision
 
     def _act(self, advice: Act, node: Node, turn: StageTurn) -> Decision:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""

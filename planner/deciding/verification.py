@@ -7,6 +7,7 @@ nothing to make sure of.
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -91,19 +92,27 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
     return Subgoal(SubgoalKind.INSPECT, *look)
 
 
-def look_since_contradiction(node: Node, situation: Situation) -> Subgoal | None:
-    """Return a look from close by at a moved object, if none was taken since an impression contradicted the map."""
-    # What was seen before may lie on squares of a map that has changed since.
-    model = situation.model
-    if not node.moved or model.looked_since == model.looked_from:
+def look_again(node: Node, situation: Situation) -> Subgoal | None:
+    """Return a look at an object that may lie elsewhere, as others or contradictions have it; None for no need."""
+    model, squares = situation.model, situation.model.mask(node.patch)
+    if node.looked_at_again:
+        look = frontiers.viewpoint_of(
+            situation.cost_maps, squares, f"others may have moved {node.name} since it was seen"
+        )
+    elif node.moved and not _is_looked_at(squares, model):
+        look = frontiers.viewpoint_of(
+            situation.cost_maps, squares, f"{node.name} was not seen closely since looks differed"
+        )
+    else:
         return None
-    squares = model.mask(node.patch)
-    if (dilate(squares, frontiers.FOVEA_RANGE) & model.squares(model.looked_since)).any():
-        return None
-    look = frontiers.viewpoint_of(
-        situation.cost_maps, squares, f"{node.name} was not seen closely since looks differed"
-    )
     return Subgoal(SubgoalKind.INSPECT, *look) if len(look.squares) else None
+
+
+def _is_looked_at(squares: Bools, model: WorldModel) -> bool:
+    """Return whether squares were looked at from close by since an impression contradicted the map, if any did."""
+    # What was seen before may lie on squares of a map that has changed since.
+    near: Bools = dilate(squares, frontiers.FOVEA_RANGE) & model.squares(model.looked_since)
+    return model.looked_since == model.looked_from or bool(near.any())
 
 
 def robot_square(model: WorldModel) -> Bools:
@@ -120,11 +129,14 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
 
 
 def check_elsewhere(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
-    """Return what to see or feel before something is said to be elsewhere than it began; [] when that is sure."""
+    """Return what to see or feel next before something is said to be elsewhere than it began; [] when that is sure."""
     unseen = unseen_beyond_door(goal, began, covered, situation)
     if unseen is not None:
         return [unseen]
-    return [Subgoal(SubgoalKind.INSPECT, *felt) for felt in unfelt_bounds(goal, began, covered, situation)]
+    looks = unfelt_bounds(goal, began, covered, situation)
+    # With something in hand, a push may show what is further away.
+    nearest = islice(looks, 1 if situation.model.held is None else None)
+    return [Subgoal(SubgoalKind.INSPECT, *look) for look in nearest]
 
 
 def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:

@@ -6,7 +6,7 @@ felt.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,19 +35,27 @@ class BoundsByTheWay:
         return tuple(unfelt_bounds(self.goal, self.began, self.covered, self.situation))
 
 
-def unfelt_bounds(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Viewpoint]:
-    """Return where to feel each piece of the bounds on which a goal rests, or to see it better."""
-    # [] when it is settled.
-    # If such a piece were a thing, alone or together with all others that may be one, the goal would not hold.
-    pieces = situation.model.unfelt_pieces
+def unfelt_bounds(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Iterator[Viewpoint]:
+    """Yield where to feel each piece of the bounds on which a goal rests, or to see it better, the nearest first."""
+    # Nothing when it is settled.
+    # If such a piece were a thing, alone or together with all others that may be one, the goal would not hold. To tell
+    # this of a piece takes long, so it is told of the next one when that is asked for.
+    pieces = [(mask, _felt_from(mask, situation)) for mask in situation.model.unfelt_pieces]
     if not pieces:
-        return []
-    fails_without = _failure(goal, began, covered, situation)
-    needed = [mask for mask in pieces if fails_without(mask)]
-    if not needed and fails_without(np.any(pieces, axis=0)):
-        needed = pieces
-    looks = (_felt_from(mask, situation) for mask in needed)
-    return [look for look in looks if len(look.squares)]
+        return
+    fails_without, none = _failure(goal, began, covered, situation), True
+    for mask, look in sorted(pieces, key=lambda piece: _cost(piece[1], situation)):
+        if fails_without(mask):
+            none = False
+            yield from [look] * bool(len(look.squares))
+    if none and fails_without(np.any([mask for mask, _ in pieces], axis=0)):
+        yield from (look for _, look in pieces if len(look.squares))
+
+
+def _cost(look: Viewpoint, situation: Situation) -> float:
+    """Return what the way to a viewpoint costs, in squares; infinite where none is known."""
+    found = situation.cost_maps.nearest(look.squares)
+    return math.inf if found is None else found.cost
 
 
 def telling_squares(situation: Situation) -> Bools:

@@ -13,6 +13,7 @@ from utak.geometry.manipulation.goals import At, End, InCorner, Inside, shape_at
 from utak.geometry.raster.rasterize import squares
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.reasoning.user_rules import predicates_read
+from utak.kb.world.chances import Chances
 from utak.kb.world.facts import appearance_facts
 from utak.kb.world.model import hundredths
 from utak.kb.world.rooms import NO_ROOM
@@ -185,7 +186,9 @@ def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
     yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)
     yield from (f"relief({door},{saved})" for door, saved in situation.door_reliefs.items() if saved)
     if ("door", 2) in predicates_read("task", situation.rules):
-        yield from (f"door({door.name},{door.confidence})" for door in situation.rooms.doors)
+        chances = Chances(situation.model, situation.rooms)
+        shares = ((door, chances.of_door(door, chances.widths(door))) for door in situation.rooms.doors)
+        yield from (f"door({door.name},{share})" for door, share in shares)
         yield from (f"door({door.name},0)" for door in situation.possible_doors)
     yield from situation.facts_for_rules("task")
 

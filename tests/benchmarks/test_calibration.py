@@ -28,6 +28,8 @@ from benchmarks.priors.bins import ANY, EXTENT, MASS, PLACES, WHOLE, Bin, bin_of
 from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_places
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
 from benchmarks.worlds.furniture import OUTLINE_SHAPES, outline
+from utak.kb.localisation.standing import Standing
+from utak.kb.perception.frame import Frame
 from utak.kb.task.task import task_from_texts
 from utak.kb.world.rooms import Rooms
 
@@ -115,6 +117,46 @@ def test_where_a_thing_is_that_nobody_saw_is_compared_with_what_is_so() -> None:
     assert verdicts(moment(*facts)) == dict(zip(facts, (True, False, False), strict=True))
     assert verdicts(moment(*facts, o1=(3, 3, 6, 6))) == dict(zip(facts, (False, True, False), strict=True))
     assert verdicts(moment("may_be(y,r1,70)")) == {}
+
+
+def test_where_the_robot_stands_is_compared_from_where_it_woke() -> None:
+    """It woke in the square (5, 8) of the table, and is in (12, 8), whatever it believes."""
+    model = SimpleNamespace(**vars(MODEL), standing=Standing("unsure", Frame(), {}))
+    found = moment("loc(700,0,90)", "loc(600,0,10)")
+    assert found.alternatives is not None
+    compared = found._replace(alternatives=found.alternatives._replace(model=model))
+    assert verdicts(compared) == {"loc(700,0,90)": True, "loc(600,0,10)": False}
+
+
+def test_a_stretch_of_wall_is_a_thing_where_one_covers_most_of_it() -> None:
+    """Between two strips of floor lie a thing, three squares wide and high, and then wall that is one square high."""
+    space = np.zeros((16, 20), np.bool_)
+    space[7, 3:9] = space[2, 3:6] = space[5, 6:9] = True
+    view = SimpleNamespace(west=0, south=0, seen=np.ones_like(space))
+    model = SimpleNamespace(
+        **{**vars(MODEL), "view": view}, space=space, objects=(), felt={}, squares=lambda _: np.zeros_like(space)
+    )
+    facts = ("plug(w1,30)", "plug(w2,20)")
+    found = moment(*facts)
+    assert found.alternatives is not None
+    compared = found._replace(alternatives=found.alternatives._replace(model=model))
+    assert verdicts(compared) == {"plug(w1,30)": True, "plug(w2,20)": False}
+
+
+def test_what_joins_parts_of_the_floor_is_compared_with_the_true_floor() -> None:
+    """Of three parts of one room, in a row from west to east, the outer ones lead to the middle one first."""
+    labels, occupied = np.zeros((16, 20), np.int32), SimpleNamespace(name="part4", occupied=True)
+    for number, (west, east) in enumerate(((3, 5), (8, 10), (15, 17)), 1):
+        labels[8, west:east] = number
+    labels[0, :4] = 5  # taken for floor, and wall in truth
+    free = [SimpleNamespace(name=f"part{n}", occupied=False) for n in (1, 2, 3, 5)]
+    percept = SimpleNamespace(regions=(*free, occupied))
+    model = SimpleNamespace(**vars(MODEL), labels=labels, space=labels > 0, percept=percept)
+    facts = ("hidden(part1,part2,80)", "hidden(part3,part2,70)", "hidden(part3,part1,20)", "hidden(part5,part1,40)")
+    found = moment(*facts)
+    assert found.alternatives is not None
+    compared = found._replace(alternatives=found.alternatives._replace(model=model))
+    assert verdicts(compared) == dict(zip(facts, (True, True, False, False), strict=True))
 
 
 HERE = "offset(org,0,0)"

@@ -81,6 +81,8 @@ class MapReplay:
             moved = [(self._taken[pose.name], pose) for pose in observation.moved if pose.name in self._taken]
             there = [_moved_to(taken, held_objects[pose.name], pose, self.new) for taken, pose in moved]
             x, y = (math.floor(v) for v in self.new.place_from_utak(*observation.place))
+            for (taken, _), now in zip(moved, there, strict=True):
+                self._occupancy.uncover(taken.possible, now.possible, taken.since - 1)
             freed = subtract_held_objects(self.new.samples(), observation.ranges, x, y, there)
             self._residual += self._occupancy.clashes(*freed, x, y)
             self._occupancy.observe(*freed, x, y, number)

@@ -126,11 +126,13 @@ def observation_places(place: Position) -> tuple[Position, ...]:
     return tuple((x, y) for x in columns for y in rows)
 
 
-def entered_square(place: Position, towards: Position) -> Square:
-    """Return the square (column, row) that a motion from `place` towards a point was about to enter, map frame."""
-    away = math.dist(place, towards) or 1.0
-    ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
-    return math.floor(ahead[0]), math.floor(ahead[1])
+def entered_square(place: Position, towards: Position) -> Square | None:
+    """Return the square (column, row) that a motion from a grid line at `place` towards a point enters, map frame."""
+    # None off all grid lines: nothing stops a point there.
+    if len(observation_places(place)) == 1:
+        return None
+    x, y = (a + math.copysign(3 * LINE_DISTANCE, b - a) if a != b else a for a, b in zip(place, towards, strict=True))
+    return math.floor(x), math.floor(y)
 
 
 def add(place: Position, shift: Position) -> Position:

@@ -78,7 +78,6 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "corners": {"furthest": (("northeast", "southwest"), NUMBERS)},
     "interpretation": {
         "kind": (REGIONS, ("utak", "floor", "verge", "object"), (48, 92, 95, 99, 100)),
-        "hidden_passage": (REGIONS, REGIONS),
     },
     "reconciliation": {
         "bind": (THINGS, NODES), "hypothesised": (THINGS,), "doubtful": (THINGS, NODES), "unmovable": (THINGS, NODES),

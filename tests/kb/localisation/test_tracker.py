@@ -58,6 +58,16 @@ def test_a_blocked_walk_is_recognised() -> None:
     assert (2, -4) in tracker.state.blocked_squares
 
 
+def test_settled_floor_blocks_no_walk() -> None:
+    walk = walked(ROOM, [(2, 0), (0, 3)])
+    x, y = utak_in(ROOM)
+    tracker = walk.knowledge.tracker
+    found = tracker.accommodate(Move(-4.0, 0.0), impression(world_of(ROOM), (x, y + 3)))  # 2 of 4
+    assert found.explanation.how == "slipped"
+    assert tracker.state.place == pytest.approx((0.5, 3.5))
+    assert not tracker.state.blocked_squares
+
+
 @pytest.mark.long
 def test_a_slip_is_recognised_after_earlier_slips() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3), (1, 0), (0, 1), (-1, 0), (0, -1)])

@@ -254,3 +254,22 @@ def test_standing_does_not_overrule_and_declaring_does() -> None:
     occupancy.declare(mask, FREE, 2)
     assert settled(occupancy)[1, 1] == FREE
     assert occupancy.settled_by[occupancy.index(1, 1)] == 2
+
+
+def test_what_a_thing_leaves_is_open_where_another_thing_may_reach_in() -> None:
+    occupied, occupancy = world_of(["......", ".gghh.", ".gghh.", "......"]), OccupancyMap()
+    observe(occupancy, occupied, (0, 0), 0)
+    lay, now = ((west, 1, np.ones((2, 2), bool)) for west in (1, 0))
+    occupancy.declare_patch(lay, FREE, 0)
+    occupancy.uncover(lay, now, 0)
+    assert {square: settled(occupancy).get(square, OPEN) for square in [(1, 1), (1, 2), (2, 1), (2, 2)]} == {
+        (1, 1): FREE,
+        (1, 2): FREE,
+        (2, 1): OPEN,
+        (2, 2): OPEN,
+    }
+    observe(occupancy, world_of(["......", "..hhh.", "..hhh.", "......"]), (0, 0), 1)  # they shared a column
+    assert not occupancy.overruled
+    assert settled(occupancy)[2, 1] == settled(occupancy)[2, 2] == OCCUPIED
+    occupancy.uncover(lay, now, 0)  # what was seen since stays so
+    assert settled(occupancy)[2, 1] == OCCUPIED

@@ -19,6 +19,7 @@ from utak.kb.task.binding import reconcile
 from utak.kb.task.pieces import touching_pieces
 from utak.kb.task.task import task_from_texts
 from utak.kb.tracing.possible_worlds import likeliest_worlds
+from utak.kb.world.facts import Places
 from utak.kb.world.rooms import rooms_of
 
 ROUNDED = 0.0006  # of a chance: weights are whole thousandths of nats
@@ -89,7 +90,7 @@ ROWS = [
 def stated(start: str, goal: str = "at(utak, x).", rows: Sequence[str] = ROWS) -> list[str]:
     model, task = known_model(list(rows)), task_from_texts(start, goal)
     reconciled = reconcile(task, model, {node.name: 3.0 for node in model.objects}, {})
-    return list(alternatives(task, model, rooms_of(model), reconciled))
+    return list(alternatives(task, model, Places(rooms_of(model), {}), reconciled))
 
 
 def test_what_is_bound_and_what_is_no_object_has_no_places() -> None:

@@ -82,7 +82,7 @@ def test_rules_of_users_are_evidence_of_places(tmp_path: Path) -> None:
 
 def test_rules_of_users_read_them_in_queries_alone(tmp_path: Path) -> None:
     facts = episode("go_to_square_unseen")[0].world.facts
-    with engine_with(tmp_path, "hidden_thing(X, R) :- may_be(X, R, C), room(R), C > 20.\n") as engine:
+    with engine_with(tmp_path, "hidden_thing(X, R) :- may_be(X, R, C), room(R), C > 5.\n") as engine:
         assert str(engine.ask(facts, "hidden_thing(x, r1)")) == "yes"
     assert not MADE_LAST & WORLD_FACTS_THERE["task"]
 
@@ -96,6 +96,35 @@ def test_why_a_thing_may_be_somewhere_is_told_and_why_not() -> None:
     assert "means nothing that was seen" in questions.why_not("may_be(x,r9,C)", 0).because
     assert "means something" in questions.why_not("may_be(x,r1,C)", len(episode(name)) - 1).because
     assert "names no object" in questions.why_not("may_be(y,r1,C)", 0).because
+
+
+def test_the_robot_stands_in_one_square() -> None:
+    places = stated("go_to_square_unseen", "loc")
+    assert all(sum(there.values()) <= 100 for there in places)
+    assert places[0] == {("0", "0"): 100}
+    first = episode("go_to_square_unseen")[0].world
+    assert str(first.query("loc(0, 0)")) == "yes"
+    assert str(first.query("possible(loc(0, 100))")) == "no"
+    reason = asked("go_to_square_unseen").why("loc(0,0,100)", 0)
+    assert "chances.lp" in str(reason)
+    assert "nothing speaks for that square" in asked("go_to_square_unseen").why_not("loc(0,100,C)", 0).because
+
+
+def test_what_joins_floors_and_what_is_a_thing_in_a_wall_is_asked_and_told() -> None:
+    name, step = "go_next_room_askew", 2
+    there, world = stated(name, "hidden")[step], episode(name)[step].world
+    assert {apart for apart, _ in there} == {"part2", "part3"}
+    assert all(sum(c for (apart, _), c in there.items() if apart == one) < 100 for one in ("part2", "part3"))
+    assert str(world.query("possible(hidden(part2, part1))")) == "yes"
+    plugs = {row["W"]: row["C"] for row in world.query("plug(W, C), stretch(W, A, B, D, E)")}
+    assert plugs and all(0 < percent < 100 for percent in plugs.values())
+    with QueryEngine() as engine:
+        acts = {fact: acts for fact, _, _, acts in engine.worlds(world.facts, 1).open}
+    assert acts["hidden(part2,part1)"] == ("look(floor)",) and acts["plug(w1)"] == ("feel(w1)",)
+    for fact in (f"hidden(part2,part1,{there['part2', 'part1']})", f"plug(w1,{plugs['w1']})"):
+        assert "chances.lp" in str(asked(name).why(fact, step))
+    assert "no seen floor joins" in asked(name).why_not("hidden(part9,part1,C)", step).because
+    assert "left unfelt" in asked(name).why_not("plug(w9,C)", step).because
 
 
 @pytest.mark.long

@@ -14,6 +14,7 @@ from benchmarks.priors.bins import PLACES
 from tests.kb.drawings import known_model
 from utak.kb.language.atoms import atom_parts, long_form, short_form
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
+from utak.kb.localisation.standing import Standing
 from utak.kb.mapping.occupancy import OPEN
 from utak.kb.perception.interpretation import counted_percent
 from utak.kb.world.chances import Chances, measured
@@ -104,6 +105,21 @@ def test_a_robot_that_is_lost_may_be_in_any_room() -> None:
     lost = replace(known_model(ROWS), lost=True)
     shares = [row for name, row in map(atom_parts, stated(lost)) if name == "in" and row[0] == "org"]
     assert len(shares) > 1 and all(len(row) == 3 for row in shares)
+
+
+def test_the_rooms_of_the_robot_are_those_of_the_squares_in_which_it_may_stand() -> None:
+    model = known_model(ROWS)
+    rooms = rooms_of(model)
+    squares = {n: np.argwhere((rooms.labels == n) & ~rooms.doorways)[0].tolist() for n in (1, 2)}
+    places = {n: (column + model.view.west, row + model.view.south) for n, (row, column) in squares.items()}
+    standing = Standing("unsure", model.frame, {places[1]: 0.75, places[2]: 0.25})
+    measured_shares: list[tuple[str, int]] = []
+    found = Chances(
+        replace(model, standing=standing), rooms, lambda *noted: measured_shares.append(noted) or 60
+    ).rooms_of(None)
+    assert measured_shares == [("in_robot", 75)] and found == [(1, 60), (2, 40)]
+    certain = replace(model, standing=standing._replace(shares={places[2]: 1.0}))
+    assert Chances(certain, rooms).rooms_of(None) == [(2, 100)]
 
 
 def test_nothing_is_known_of_a_map_in_doubt() -> None:

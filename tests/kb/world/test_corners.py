@@ -53,6 +53,23 @@ def test_an_empty_rectangular_room_has_four_corners() -> None:
     }
 
 
+def test_the_walls_of_a_corner_are_those_beside_it_whatever_other_rooms_there_are() -> None:
+    rows = ["b" * 40, *["b" + "." * 16 + "b" * 23] * 6, *["b" + "." * 16 + "b" + "." * 21 + "b"] * 4]
+    rows += ["b" + "." * 8 + "U" + "." * 29 + "b"] + ["b" + "." * 38 + "b"] * 4
+    rows += [*["b" + "." * 16 + "b" + "." * 21 + "b"] * 4, "b" * 40]
+    found = corners(known_model(rows))["northeast"]  # the hull of both rooms leads from one northern wall to the other
+    assert found.square == (38, 13)
+    assert found.walls is None
+
+
+def test_the_walls_of_a_corner_may_lie_askew() -> None:
+    rows = ["b" * 40, *["b" + "." * (8 + 3 * n) + "b" * (31 - 3 * n) for n in range(8)]]
+    rows += [*["b" + "." * 29 + "b" * 10] * 9, "b" + "." * 8 + "U" + "." * 20 + "b" * 10, "b" * 40]
+    walls = corners(known_model(rows))["northeast"].walls
+    assert walls is not None
+    assert np.allclose(sorted(walls), [(0.32, 0.95), (1.0, 0.0)], atol=0.1)  # it falls by one in three
+
+
 @pytest.mark.parametrize(("pocket", "counts"), [(2, False), (8, True)])
 def test_a_few_squares_of_floor_are_no_corner_yet(pocket: int, counts: bool) -> None:
     rows = ["b" * 24] * 2 + ["b" * 12 + "." * pocket + "b" * (12 - pocket)] + ["b" * 24] * 3

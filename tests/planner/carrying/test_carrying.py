@@ -154,6 +154,24 @@ def test_a_square_that_looks_like_a_brick_is_measured(tmp_path: Path) -> None:
     assert max(30 - east, 20 - north) <= 1.0
 
 
+@pytest.mark.parametrize("goal", few(["at(utak, x).", "circled(utak, x)."], ["at(utak, x)."]))
+def test_a_square_that_looks_like_a_brick_is_measured_for_a_goal_of_the_robot_itself(goal: str, tmp_path: Path) -> None:
+    between = f'object(t, g, "{box(8.5, 6, 11.5, 9)}").'
+    done = run(scene(tmp_path, room(between), "object(x). shape(x, square).", goal))
+    assert done.result.verdict == "done", done.result.reason
+
+
+@pytest.mark.long
+def test_two_things_may_share_the_squares_in_which_they_touch(tmp_path: Path) -> None:
+    things = f'object(t, w, "{box(11.94, 11.32, 14.94, 14.32)}").object(d, h, "{box(9.94, 10.32, 11.94, 14.32)}").'
+    ring = "(0 0, 0 22, 24 22, 24 0, 0 0), (23 2, 23 21, 2 21, 2 2, 23 2)"
+    world = f'table(24, 22).verge("POLYGON ({ring})").utak("POINT (13.44 10.82)", 0).{things}'
+    done = run(scene(tmp_path, world, "object(x). shape(x, square).", "at(x, corner(southeast))."))
+    assert done.result.verdict == "done", done.result.reason
+    _, south, east, _ = done.session.table.polygons["t"].bounds
+    assert max(23 - east, south - 2) <= 1.0
+
+
 @pytest.mark.long
 def test_a_brick_that_is_measured_stays_one(tmp_path: Path) -> None:
     brick = f'object(t, g, "{box(8, 6, 12, 9)}").'

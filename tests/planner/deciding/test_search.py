@@ -1,17 +1,13 @@
 """Subgoals while it is not known where something is."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.planner.sights.test_viewpoints import distance_from, room
 from utak.geometry.raster.components import with_edge_neighbours
-from utak.planner.deciding.search import Candidate, chance_of_none
-from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.projection import dilate, indices_to_mask
 from utak.planner.sights.frontiers import LOOK_AHEAD_RANGE, look_ahead_squares
-from utak.planner.subgoal_kind import SubgoalKind
 
 
 @given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1))
@@ -21,21 +17,6 @@ def test_an_edged_mask_has_all_squares_that_share_an_edge_with_it(rows: int, col
     want = [np.abs(indices_to_mask - square).sum(1).min(initial=9) <= 1 for square in np.ndindex(rows, columns)]
     assert with_edge_neighbours(mask).ravel().tolist() == want
     assert not (with_edge_neighbours(mask) & ~dilate(mask, 1)).any()
-
-
-def candidate(squares: list[int], chance: int) -> Candidate:
-    """Return a candidate that covers some squares. chance : percent."""
-    return Candidate(np.array(squares), Subgoal(SubgoalKind.INSPECT, np.array([0]), "", chance))
-
-
-@given(st.lists(st.integers(1, 100), max_size=6))
-def test_the_chance_of_none_is_the_product_over_separate_candidates(chances: list[int]) -> None:
-    none = chance_of_none([candidate([k], chance) for k, chance in enumerate(chances)])
-    assert none == pytest.approx(float(np.prod([1 - chance / 100 for chance in chances])))
-
-
-def test_candidates_that_share_squares_count_once() -> None:
-    assert chance_of_none([candidate([1, 2], 40), candidate([2, 3], 90)]) == pytest.approx(0.6)
 
 
 def test_squares_behind_a_place_are_seen_from_short_of_it() -> None:

@@ -25,11 +25,12 @@ from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.verification import (
     Verifier,
     check_elsewhere,
+    look_again,
     look_at_contradiction,
     look_before_grasp,
-    look_since_contradiction,
     unseen_beyond_door,
 )
+from utak.planner.goals.bounds import unfelt_bounds
 from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.stages import Stage
 
@@ -129,10 +130,19 @@ def test_what_was_moved_is_seen_from_close_by_again_after_a_contradiction() -> N
     moved = replace(model, objects=(replace(node, moved=True),), looked_from=frozenset({here, far}))
     for looked, again in (({here, far}, False), ({here}, False), ({far}, True), (set(), True)):
         situation = situation_of(replace(moved, looked_since=frozenset(looked)))
-        found = look_since_contradiction(situation.model.objects[0], situation)
+        found = look_again(situation.model.objects[0], situation)
         assert (found is not None) == again, looked
     unmoved = situation_of(replace(model, looked_from=frozenset({here})))
-    assert look_since_contradiction(node, unmoved) is None
+    assert look_again(node, unmoved) is None
+
+
+@pytest.mark.parametrize("again", [False, True])
+def test_what_others_may_have_moved_is_looked_at_again(again: bool) -> None:
+    model = known_model(BESIDE_A_THING)
+    node = replace(model.objects[0], looked_at_again=again)
+    found = look_again(node, situation_of(replace(model, objects=(node,))))
+    assert (found is not None) == again
+    assert found is None or f"others may have moved {node.name}" in found.what
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
@@ -195,6 +205,18 @@ def test_a_door_is_sure_when_verge_was_felt_on_both_of_its_jambs() -> None:
     assert is_doubtful()
     assert all(is_doubtful(jamb) for jamb in jambs)
     assert not is_doubtful(*jambs)
+
+
+def test_of_what_is_to_be_felt_the_nearest_is_asked_for_first() -> None:
+    model = known_model(STUB)
+    situation = situation_of(model)
+    began, covered = (-20.0, 0.5), model.squares([(0, 0)])
+    looks = [look.squares for look in unfelt_bounds(IN_NEXT_ROOM, began, covered, situation)]
+    ways = [way.cost for way in map(situation.cost_maps.nearest, looks) if way is not None]
+    assert len(ways) == len(looks) > 1
+    assert ways == sorted(ways)
+    (first,) = check_elsewhere(IN_NEXT_ROOM, began, covered, situation)
+    assert first.squares.tolist() == looks[0].tolist()
 
 
 ARM = [  # a room with an arm to the east, just as long as it is seen to be

@@ -134,3 +134,16 @@ def test_a_lifted_robot_knows_where_it_is_and_the_task_goes_on(tmp_path: Path) -
 def test_a_thing_that_others_took_for_good_makes_no_verdict_impossible(tmp_path: Path) -> None:
     episode = run_disturbed(tmp_path, "vanish(g1, 2).")
     assert episode.verdict in ("possible_if", "limit")
+
+
+def test_what_is_out_of_sight_is_less_sure_once_others_took_something_away(tmp_path: Path) -> None:
+    appear = 'appear(a1, r, "POLYGON ((5 5, 7 5, 7 7, 5 7, 5 5))", 1).'
+    stated = {}
+    for number, moved in enumerate(("", 'move(g1, "POINT (28.5 6.5)", 10).')):
+        (tmp_path / "acts.lp").write_text(f"{appear} {moved}")
+        scenario = EXAMPLE.parent / "go_with_empty_hands"
+        episode = utak.Run(scenario, seed=0, disturb=tmp_path / "acts.lp").finish()
+        assert (episode.verdict, episode.achieved) == ("done", True)
+        stated[number] = [fact for step in episode for fact in step.world.facts if fact.startswith("persists(")]
+    assert not stated[0]
+    assert stated[1] and all(0 < int(fact.split(",")[1][:-2]) < 100 for fact in stated[1])

@@ -3,6 +3,7 @@
 import math
 from itertools import pairwise
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -52,9 +53,15 @@ def test_a_motion_within_a_square_crosses_nothing() -> None:
     assert line_crossings((0.5, 0.5), (0.0, 0.0)) == ()
 
 
-def test_the_entered_square_lies_on_the_way() -> None:
-    assert entered_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
-    assert entered_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
+@pytest.mark.parametrize("way", [(0.0, 9.0), (-4.0, 0.0), (3.0, -7.0), (5.0, 5.0)])
+def test_both_places_at_a_line_enter_the_square_beyond_it(way: tuple[float, float]) -> None:
+    end = (0.3 + way[0], 0.7 + way[1])
+    for crossing in line_crossings((0.3, 0.7), way):
+        assert entered_square(crossing.before, end) == entered_square(crossing.after, end) == crossing.entered
+
+
+def test_no_square_is_entered_off_all_lines() -> None:
+    assert entered_square((0.5, 0.5), (0.5, 9.5)) is None
 
 
 @given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))

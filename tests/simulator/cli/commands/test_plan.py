@@ -19,7 +19,7 @@ from utak.simulator.episode.schema import accepts
 from utak.simulator.explaining.questions import questions_of_episode
 from utak.simulator.replay.transcript import transcript
 
-STEPS = 4  # commands of the recorded run: after the last one the block is aside, and its plan goes on
+STEPS = 5  # commands of the recorded run: after the last one the block is aside, and its plan goes on
 WORLD = """\
 bbbbbbbbbbbbbbbbbbbbbbbbbb
 b...........b............b
@@ -185,7 +185,7 @@ def test_why_not_knows_what_a_plan_is(run: Path, first: int) -> None:
     assert questions.why_not("unmet(g1)", first).because == "the task plan does not state it"
     assert "plan(0,find(g1))" in {reason.claim for reason in questions.why("unmet(g1)", 0).walk()}
     cost = questions.why("price(K, L, E)", first).because
-    assert cost.startswith("about 9 commands for the whole plan; lower bound by the estimates of the search ")
+    assert cost.startswith("about 10 commands for the whole plan; lower bound by the estimates of the search ")
     assert cost.endswith("; the search ended with it")
     assert questions.why_not("held(o1)", 3).because == "it was never in hand up to this step; this is in hand instead"
 
