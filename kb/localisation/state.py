@@ -257,6 +257,14 @@ class TrackerState:
         """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first."""
         return tuple(motion for motion in self.earlier if motion.likely_ends)
 
+    def is_beside_things(self, held: HeldObject) -> bool:
+        """Return whether other things that were seen lie on an object's squares, or share an edge with them."""
+        own = held.possible.squares()
+        about = {(x + dx, y + dy) for x, y in own for dx, dy in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))}
+        seen = (squares for name, squares in self.things.items() if name != held.name)
+        held_before = (other.possible.squares() for other in self.others(held))
+        return any(not about.isdisjoint(squares) for squares in (*seen, *held_before))
+
     def others(self, held: HeldObject) -> list[HeldObject]:
         """Return all objects that were ever held except the one of the name of `held`, where they lie, map frame."""
         return [other for other in self.held_objects.values() if other.name != held.name]

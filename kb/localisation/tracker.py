@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
-from utak.geometry.motion.se2 import Motion
 from utak.kb.body import Command, Impression, Move, Push, Release, Turn
 from utak.kb.localisation.after_carry import (
     agreeing_origins,
@@ -154,8 +153,9 @@ class Tracker:
         """Believe that an object is in the hand; `state` is replaced."""
         held_objects = self.state.held_objects
         if held.name not in held_objects:
+            touching, number = self.state.is_beside_things(held), len(self.state.observations)
             self._declare(held.possible, FREE)
-            held_objects = {**held_objects, held.name: replace(held, since=len(self.state.observations))}
+            held_objects = {**held_objects, held.name: replace(held, since=number, touching=touching)}
         self.state = replace(self.state, held_objects=held_objects, in_hand=held.name)
 
     def update_object(self, held: HeldObject) -> None:
@@ -192,8 +192,8 @@ class Tracker:
         self._count_confirmations(explanation)
         self._note_motion(explanation)
         if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
-            entered = entered_square(explanation.place, walk.predicted)
-            squares = explanation.contact_squares or {square for square in [entered] if square is not None}
+            entered = filter(None, [entered_square(explanation.place, walk.predicted)])
+            squares = explanation.contact_squares or frozenset(entered)
             self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
         return self._integrate(explanation, ranges)
 
@@ -259,7 +259,9 @@ class Tracker:
         if isinstance(command, Turn) and (state.beside_line or state.place_doubt):
             held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
             self.update_object(held)
-        self._uncover(held, motion)
+        if held.touching:  # the other thing may reach into squares that it leaves
+            lay, now = held.seen_on or held.lying(held.first).possible, held.lying(motion.carry(held.polygon)).possible
+            state.occupancy.uncover(lay, now, held.since - 1)
         judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
         if judged.explanation.how == "lost":
             return self._unexplained(judged.explanation, ranges)
@@ -270,12 +272,6 @@ class Tracker:
         if name in self.state.held_objects and self.state.in_hand == name:
             self._move_object(name, judged.explanation, command, ranges)
         return self._integrate(judged.explanation, ranges)
-
-    def _uncover(self, held: HeldObject, motion: Motion) -> None:
-        """Open squares of the map that the held object leaves by a motion, and that another thing may share."""
-        lay = held.lying(held.first).possible if held.seen_on is None else held.seen_on
-        now = held.lying(motion.carry(held.polygon)).possible
-        self.state.occupancy.uncover(lay, now, held.since - 1)
 
     def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
         """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""

@@ -76,6 +76,7 @@ class HeldObject:
     stopped: bool = False  # Whether one of its motions ended early, or beside its predicted place
     # Whether it was seen to move as one thing: a motion that did not end early left no field unexplained
     whole: bool = False
+    touching: bool = False  # Whether another thing lay right beside it when it was first held: they may share squares
     # The squares on which it was seen before it was grasped, map frame; None when these are not known any more, for the
     # frame is another one
     seen_on: Patch | None = None

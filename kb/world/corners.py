@@ -97,7 +97,7 @@ def _wall_normals(floor: Bools, point: XY, owner: Mapping[Square, Square]) -> tu
     # corner: the hull of all floor leads on to that of other rooms, past no wall.
     ring = _hull(_end_squares(_floor_about(floor, owner[round(point[0]), round(point[1])])))
     along, length = ring.project(shapely.Point(point)), ring.length
-    ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 8)) % length) for way in (-1, 1)]
+    ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 4)) % length) for way in (-1, 1)]
     steps = np.array([(end.x - point[0], end.y - point[1]) for end in ends])
     if (np.abs(steps).min(axis=1) < 1.0).all():
         return None

@@ -116,15 +116,18 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
             for look in borders
         ]
         odd, plain = (frontiers.unsettled_boundaries(cost_maps, apart, odd=odd) for odd in (True, False))
+        odd_chance, plain_chance = (
+            max(1, round(unseen * chance)) for chance in (UNEXPLAINED_CHANCE, LIKELY_WALL_CHANCE)
+        )
         settled = [
-            Subgoal(SubgoalKind.SETTLE, *look, price=UNEXPLAINED_BONUS)._replace(chance=UNEXPLAINED_CHANCE)
-            for look in odd
+            Subgoal(SubgoalKind.SETTLE, *look, price=UNEXPLAINED_BONUS)._replace(chance=odd_chance) for look in odd
         ]
-        settled += [Subgoal(SubgoalKind.SETTLE, *look)._replace(chance=LIKELY_WALL_CHANCE) for look in plain]
+        settled += [Subgoal(SubgoalKind.SETTLE, *look)._replace(chance=plain_chance) for look in plain]
         if explored or settled:
             break
     beyond = frontiers.unreached_rooms(cost_maps)
-    passages = [Subgoal(SubgoalKind.PASS, *look)._replace(chance=PASSAGE_CHANCE) for look in beyond]
+    passage_chance = max(1, round(unseen * PASSAGE_CHANCE))
+    passages = [Subgoal(SubgoalKind.PASS, *look)._replace(chance=passage_chance) for look in beyond]
     return [*explored, *settled, *passages]
 
 

@@ -82,7 +82,8 @@ class MapReplay:
             there = [_moved_to(taken, held_objects[pose.name], pose, self.new) for taken, pose in moved]
             x, y = (math.floor(v) for v in self.new.place_from_utak(*observation.place))
             for (taken, _), now in zip(moved, there, strict=True):
-                self._occupancy.uncover(taken.possible, now.possible, taken.since - 1)
+                if taken.touching:
+                    self._occupancy.uncover(taken.possible, now.possible, taken.since - 1)
             freed = subtract_held_objects(self.new.samples(), observation.ranges, x, y, there)
             self._residual += self._occupancy.clashes(*freed, x, y)
             self._occupancy.observe(*freed, x, y, number)
