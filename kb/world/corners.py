@@ -69,8 +69,15 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
 def _convex_corners(floor: Bools) -> list[Corner]:
     """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it."""
     owner = _end_squares(floor)
-    points = sorted(set(_hull(owner).coords))
-    return [Corner((x, y), owner[round(x), round(y)], _wall_normals(floor, (x, y), owner)) for x, y in points]
+    whole = _hull(owner)
+    found = []
+    for x, y in sorted(set(whole.coords)):
+        square = owner[round(x), round(y)]
+        normals = _wall_normals(whole, (x, y), 1 / 8)
+        if normals is not None and _is_straight(floor, (x, y), square):
+            normals = None  # the hull of all floor leads on to that of other rooms, past no wall
+        found.append(Corner((x, y), square, normals))
+    return found
 
 
 def _end_squares(floor: Bools) -> dict[Square, Square]:
@@ -91,13 +98,11 @@ def _hull(points: Iterable[Square]) -> shapely.LinearRing:
     return shapely.convex_hull(shapely.multipoints(sorted(points))).exterior
 
 
-def _wall_normals(floor: Bools, point: XY, owner: Mapping[Square, Square]) -> tuple[XY, XY] | None:
-    """Return the outward unit normals of the two walls at a corner of the convex hull of a mask, in its frame."""
-    # None where both walls lie along the grid, or where they are nearly one wall. A wall lies along the floor about its
-    # corner: the hull of all floor leads on to that of other rooms, past no wall.
-    ring = _hull(_end_squares(_floor_about(floor, owner[round(point[0]), round(point[1])])))
+def _wall_normals(ring: shapely.LinearRing, point: XY, share: float) -> tuple[XY, XY] | None:
+    """Return the outward unit normals of the two walls at a corner of a convex ring, each a share of it at most."""
+    # None where both walls lie along the grid, or where they are nearly one wall.
     along, length = ring.project(shapely.Point(point)), ring.length
-    ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 4)) % length) for way in (-1, 1)]
+    ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length * share)) % length) for way in (-1, 1)]
     steps = np.array([(end.x - point[0], end.y - point[1]) for end in ends])
     if (np.abs(steps).min(axis=1) < 1.0).all():
         return None
@@ -105,6 +110,11 @@ def _wall_normals(floor: Bools, point: XY, owner: Mapping[Square, Square]) -> tu
     (ax, ay), (bx, by) = steps / np.hypot(*steps.T)[:, None]
     normals = (-turn * ay, turn * ax), (turn * by, -turn * bx)
     return normals if abs(normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]) > MIN_CORNER_SINE else None
+
+
+def _is_straight(floor: Bools, point: XY, square: Square) -> bool:
+    """Return whether the floor about a corner of a mask has walls along the grid there."""
+    return _wall_normals(_hull(_end_squares(_floor_about(floor, square))), point, 1 / 4) is None
 
 
 def _floor_about(floor: Bools, square: Square) -> Bools:

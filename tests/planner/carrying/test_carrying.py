@@ -492,7 +492,7 @@ def test_an_object_off_the_grid_is_carried_right_into_its_corner(part: float, tm
     ("seed", "kind", "how"),
     [
         (402017, "wide", "is taken along: "),
-        (370059, "loose", "is led out of the nook, to be grasped from elsewhere"),
+        (371029, "loose", "is led out of the nook, to be grasped from elsewhere"),
     ],
 )
 def test_a_robot_that_is_shut_in_a_corner_leads_the_held_object_out(
