@@ -235,7 +235,7 @@ class _WalkExplainer:
         return frames[number], residual
 
     def _blocked(self, place: Position) -> Explanation:
-        """Return the explanation that the walk was blocked at `place`, contradicted where nothing can stand ahead."""
+        """Return the explanation that the walk was blocked at `place`, contradicted where floor is settled ahead."""
         occupancy, entered = self._state.occupancy, entered_square(place, self._ahead)
         barred = entered is not None and occupancy.state[occupancy.index(*entered)] != FREE
         return self._explanation("blocked", place, self._predicted)._replace(contradicted=not barred)

@@ -192,8 +192,8 @@ class Tracker:
         self._count_confirmations(explanation)
         self._note_motion(explanation)
         if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
-            entered = filter(None, [entered_square(explanation.place, walk.predicted)])
-            squares = explanation.contact_squares or frozenset(entered)
+            entered = entered_square(explanation.place, walk.predicted)
+            squares = explanation.contact_squares or frozenset([entered] if entered else [])
             self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
         return self._integrate(explanation, ranges)
 

@@ -34,17 +34,29 @@ def movabilities(
 ) -> Mapping[str, Movability]:
     """Return by name whether things can be moved; world: facts that rules may read besides."""
     facts = [fact for thing in things for fact in _facts_of(thing)]
-    named = predicates_read(MOVABLE.stem, rules)
-    facts += [fact for fact in world if signature_of(fact) in named]
-    found: dict[str, dict[str, list[int]]] = {"tried": {}, "movable": {}}
-    felt_first = set()
-    for atom in (solve([MOVABLE, *rules], facts) if facts else None) or ():
+    decided = decided_of_things(MOVABLE, facts, rules, world, ("tried", "movable", "felt_first")) if facts else {}
+    return {name: Movability(*one) for name, one in decided.items()}
+
+
+def decided_of_things(
+    encoding: Path, facts: Iterable[str], rules: tuple[Path, ...], world: Iterable[str], names: tuple[str, str, str]
+) -> Mapping[str, tuple[int, bool]]:
+    """Return by thing the percent that an encoding states of it, and whether it has a mark.
+
+    names : of the predicates of what was counted, of what rules state in place of it, and of the mark.
+    """
+    counted, stated, mark = names
+    named = predicates_read(encoding.stem, rules)
+    given = [*facts, *(fact for fact in world if signature_of(fact) in named)]
+    found: dict[str, dict[str, list[int]]] = {counted: {}, stated: {}}
+    marked = set()
+    for atom in solve([encoding, *rules], given) or ():
         if atom.name in found:
             found[atom.name].setdefault(str(atom.arguments[0]), []).append(atom.arguments[1].number)
-        elif atom.match("felt_first", 1):
-            felt_first.add(str(atom.arguments[0]))
-    stated = found["tried"] | found["movable"]
-    return {name: Movability(max(percents), name in felt_first) for name, percents in stated.items()}
+        elif atom.match(mark, 1):
+            marked.add(str(atom.arguments[0]))
+    percents = found[counted] | found[stated]
+    return {name: (max(those), name in marked) for name, those in percents.items()}
 
 
 def _facts_of(thing: MotionHistory) -> Iterable[str]:

@@ -8,10 +8,9 @@ import numpy as np
 
 from utak.geometry.counts.retina import RETINA_REACH
 from utak.geometry.kernels.arrays import XY
-from utak.kb.language.atoms import signature_of
+from utak.kb.objects.movability import decided_of_things
 from utak.kb.reasoning.encodings import KB_ENCODINGS
-from utak.kb.reasoning.solver import solve
-from utak.kb.reasoning.user_rules import predicates_read, rules_reach
+from utak.kb.reasoning.user_rules import rules_reach
 
 PERSISTENCE = KB_ENCODINGS / "persistence.lp"
 
@@ -47,14 +46,5 @@ def persistences(
     facts = [f"removed({changes.removed})", f"checked({checks})", *(f"thing({name})" for name in things)]
     facts += [f"out_of_sight({name},{many})" for name, many in zip(things, unseen.tolist(), strict=True) if many]
     facts += [] if changes.since is None else [f"since_change({changes.since})"]
-    named = predicates_read(PERSISTENCE.stem, rules)
-    facts += [fact for fact in world if signature_of(fact) in named]
-    found: dict[str, dict[str, list[int]]] = {"by_count": {}, "persists": {}}
-    again = set()
-    for atom in solve([PERSISTENCE, *rules], facts) or ():
-        if atom.name in found:
-            found[atom.name].setdefault(str(atom.arguments[0]), []).append(atom.arguments[1].number)
-        elif atom.match("looked_at_again", 1):
-            again.add(str(atom.arguments[0]))
-    stated = found["by_count"] | found["persists"]
-    return {name: Persistence(max(percents), name in again) for name, percents in stated.items()}
+    decided = decided_of_things(PERSISTENCE, facts, rules, world, ("by_count", "persists", "looked_at_again"))
+    return {name: Persistence(*one) for name, one in decided.items()}

@@ -13,11 +13,10 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.runs import runs_along_rows
-from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from utak.kb.world.model import WorldModel, hundredths
 
 MIN_WIDTH, MAX_WIDTH = 2, 8  # squares along the wall: doorways are about so wide; a convention
-MAX_THICKNESS = 12  # squares of wall through which floor behind it makes a doorway likely; a convention
+MAX_THICK_WALL = 12  # squares of wall through which floor behind it makes a doorway likely; a convention
 
 
 class Stretch(NamedTuple):
@@ -46,10 +45,11 @@ def stretches(model: WorldModel) -> list[Stretch]:
     wall = model.view.seen & ~model.space
     for node in model.objects:
         wall &= ~model.mask(node.patch)
-    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     found = [*_across(wall, model.space)]
     found += [(mask.T, wide, thick) for mask, wide, thick in _across(wall.T, model.space.T)]
-    unfelt = sorted((one for one in found if not (one[0] & felt).any()), key=lambda one: int(one[0].argmax()))
+    unfelt = sorted(
+        (one for one in found if not (one[0] & model.felt_verge).any()), key=lambda one: int(one[0].argmax())
+    )
     return [Stretch(f"w{number}", *one) for number, one in enumerate(unfelt, 1)]
 
 
@@ -59,7 +59,7 @@ def _across(wall: Bools, space: Bools) -> Iterator[tuple[Bools, int, int]]:
     standing, ground = np.pad(wall, ((0, 1), (0, 0))), np.pad(space, ((0, 1), (0, 0)))  # a row without wall ends all
     between: dict[int, set[tuple[int, int]]] = {}
     for row, start, stop in runs_along_rows(np.ascontiguousarray(standing)).each():
-        inside = start > 0 and stop < standing.shape[1] and stop - start <= MAX_THICKNESS
+        inside = start > 0 and stop < standing.shape[1] and stop - start <= MAX_THICK_WALL
         if inside and ground[row, start - 1] and ground[row, stop]:
             between.setdefault(row, set()).add((start, stop))
     for row in range(len(standing)):

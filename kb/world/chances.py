@@ -18,7 +18,6 @@ from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.perception.interpretation import LONGEST_OBJECT, counted_percent
-from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from utak.kb.perception.regions import extents
 from utak.kb.world.corners import Corner
 from utak.kb.world.doors import ENCODED_DOOR_RATIO, jamb
@@ -247,8 +246,7 @@ class Chances:
                 sure &= ~piece
             pieces = components(sure)  # what is settled to be longer than any thing is no part of one
             sure = (extents(pieces.labels, pieces.number) > LONGEST_OBJECT)[pieces.labels] & sure
-        felt = [square for square, colour in self.model.felt.items() if colour == VERGE_TOUCH_COLOUR]
-        found: Bools = sure | (self.model.squares(felt) & self._surely_occupied)
+        found: Bools = sure | (self.model.felt_verge & self._surely_occupied)
         return found
 
     def _without(self, verge: _Body, node: Node | None, about: _Body) -> _Body:

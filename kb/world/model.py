@@ -194,13 +194,17 @@ class WorldModel:
     @cached_property
     def unfelt_pieces(self) -> list[Bools]:
         """Masks of pieces of the bounds that may be things, however long, smaller ones first."""
-        verge = [square for square, colour in self._felt_on_view.items() if colour == VERGE_TOUCH_COLOUR]
         things: Bools = np.zeros(self.labels.shape, np.bool_)
         for node in self.objects:
             things |= self.mask(node.patch)
         parts = protrusions(self.space, self._solid, self.view.seen, self._felt_on_view, LONGEST_OBJECT)
         rests = [part & ~things for part in parts]
-        return [rest for rest in rests if rest.any() and not any(rest[square] for square in verge)]
+        return [rest for rest in rests if rest.any() and not (rest & self.felt_verge).any()]
+
+    @cached_property
+    def felt_verge(self) -> Bools:
+        """Squares that were felt to be verge, (rows, columns) bool on the view's arrays."""
+        return self.squares(square for square, colour in self.felt.items() if colour == VERGE_TOUCH_COLOUR)
 
     @cached_property
     def _felt_on_view(self) -> Mapping[tuple[int, int], str]:

@@ -96,15 +96,12 @@ def look_again(node: Node, situation: Situation) -> Subgoal | None:
     """Return a look at an object that may lie elsewhere, as others or contradictions have it; None for no need."""
     model, squares = situation.model, situation.model.mask(node.patch)
     if node.looked_at_again:
-        look = frontiers.viewpoint_of(
-            situation.cost_maps, squares, f"others may have moved {node.name} since it was seen"
-        )
+        what = f"others may have moved {node.name} since it was seen"
     elif node.moved and not _is_looked_at(squares, model):
-        look = frontiers.viewpoint_of(
-            situation.cost_maps, squares, f"{node.name} was not seen closely since looks differed"
-        )
+        what = f"{node.name} was not seen closely since looks differed"
     else:
         return None
+    look = frontiers.viewpoint_of(situation.cost_maps, squares, what)
     return Subgoal(SubgoalKind.INSPECT, *look) if len(look.squares) else None
 
 

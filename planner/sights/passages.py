@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools
+from utak.kb.task.stretches import MAX_THICK_WALL
 from utak.planner.screen.moves import EDGE_OFFSET
 from utak.planner.screen.projection import CostMaps
-from utak.planner.sights.walls import EDGE_STEPS, MAX_THICK_WALL, floor_apart
+from utak.planner.sights.walls import EDGE_STEPS, floor_apart
 
 LINES = (0.0, -EDGE_OFFSET, EDGE_OFFSET)  # squares from the middle of a row: at most EDGE_OFFSET apart, rows together
 SAME_LINE = 1.0 - 2 * EDGE_OFFSET  # squares between the last line of a row and the first one of the next

@@ -4,7 +4,6 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import with_edge_neighbours
-from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from utak.kb.world.model import Node
 from utak.planner.screen.projection import CostMaps
 from utak.planner.sights.frontiers import Viewpoint, elsewhere_touch_viewpoint
@@ -17,8 +16,9 @@ def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
     several = [node for node in model.objects if not node.whole and node.confidence >= MIN_LIKELY_OBJECT]
     if scope.things:
         return several
-    verge = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
-    known: Bools = cost_maps.floor | verge | np.any([model.mask(node.patch) for node in model.objects], axis=0)
+    known: Bools = (
+        cost_maps.floor | model.felt_verge | np.any([model.mask(node.patch) for node in model.objects], axis=0)
+    )
     return [node for node in several if (with_edge_neighbours(model.mask(node.patch)) & ~known).any()]
 
 

@@ -18,7 +18,7 @@ from utak.geometry.kernels.arrays import Bools, Square
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.geometry.raster.runs import runs_along_rows
 from utak.kb.perception.interpretation import LONGEST_OBJECT
-from utak.kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from utak.kb.task.stretches import MAX_THICK_WALL
 from utak.kb.world.model import WorldModel
 from utak.planner.screen.projection import CostMaps, dilate, shift_mask
 from utak.planner.sights.frontiers import MIN_UNREACHED_SQUARES
@@ -26,7 +26,6 @@ from utak.planner.sights.frontiers import MIN_UNREACHED_SQUARES
 EDGE_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 DOORWAY_WIDTH = 3  # squares in a row that are felt at once; a thing as wide as a usual doorway covers so many (derived)
 MAX_THIN_WALL = 5  # squares: a wall up to so thick is thin; a convention
-MAX_THICK_WALL = 12  # squares of wall through which floor behind it makes a doorway likely; a convention
 MAX_NICHE_WIDTH = 8  # squares: the floor of a niche is at most so wide; a convention
 NICHE_SHARE = 2  # times as wide is the room before a niche, at least: as a room is beside a door
 MAX_NICHE_DEPTH = 3  # squares: a niche widens to a room within so many; a convention
@@ -78,8 +77,8 @@ ALL_WALLS = FeelingScope()
 
 def unfelt_walls(model: WorldModel) -> Bools:
     """Return the squares where a wall was seen and never felt, beside floor to which the robot comes."""
-    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
-    mask: Bools = with_edge_neighbours(_ground(model)) & model.view.seen & ~model.space & ~felt & ~_things(model)
+    seen_wall = model.view.seen & ~model.space & ~model.felt_verge
+    mask: Bools = with_edge_neighbours(_ground(model)) & seen_wall & ~_things(model)
     return mask
 
 

@@ -133,9 +133,7 @@ def test_a_stretch_of_wall_is_a_thing_where_one_covers_most_of_it() -> None:
     space = np.zeros((16, 20), np.bool_)
     space[7, 3:9] = space[2, 3:6] = space[5, 6:9] = True
     view = SimpleNamespace(west=0, south=0, seen=np.ones_like(space))
-    model = SimpleNamespace(
-        **{**vars(MODEL), "view": view}, space=space, objects=(), felt={}, squares=lambda _: np.zeros_like(space)
-    )
+    model = SimpleNamespace(**{**vars(MODEL), "view": view}, space=space, objects=(), felt_verge=np.zeros_like(space))
     facts = ("plug(w1,30)", "plug(w2,20)")
     found = moment(*facts)
     assert found.alternatives is not None

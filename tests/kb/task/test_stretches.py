@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.kb.drawings import known_model
-from utak.kb.task.stretches import MAX_THICKNESS, MAX_WIDTH, stretches
+from utak.kb.task.stretches import MAX_THICK_WALL, MAX_WIDTH, stretches
 from utak.kb.world.model import WorldModel
 
 # A wall of two rows, in which three columns are four rows thick, and a door.
@@ -56,7 +56,7 @@ def test_walls_without_floor_behind_them_too_long_or_too_thick_are_none() -> Non
     assert not stretches(known_model(["b" * len(floor), floor, wall, *south]))
     narrow = "b" * (MAX_WIDTH + 1) + "...b"
     assert measured(known_model(["b" * len(floor), floor, narrow, *south])) == [("w1", MAX_WIDTH, 1)]
-    assert not stretches(known_model(["b" * len(floor), floor, *[narrow] * (MAX_THICKNESS + 1), *south]))
+    assert not stretches(known_model(["b" * len(floor), floor, *[narrow] * (MAX_THICK_WALL + 1), *south]))
 
 
 def test_what_floor_surrounds_is_no_stretch() -> None:
