@@ -3,27 +3,26 @@
 import math
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, other_outcomes, predicted_outcome
 from utak.kb.localisation.hypotheses.contacts import (
-    NO_SQUARES,
     ContactHypothesis,
     Obstructions,
     contact_outcomes,
     suspected_squares,
 )
 from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
-from utak.kb.localisation.hypotheses.what_if import Surprise, agreeing_hypotheses, count_clashes
+from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis
+from utak.kb.localisation.hypotheses.what_if import Surprise, agreeing_hypotheses
 from utak.kb.localisation.propose.blocked import has_whole_way, possible_ends
 from utak.kb.localisation.propose.contradicted_motion import overlooked_contact
 from utak.kb.localisation.propose.held_object_state import lean_on_obstacle, object_after
 from utak.kb.localisation.propose.larger_object import larger_objects
 from utak.kb.localisation.propose.parted_object import parted_objects
+from utak.kb.localisation.propose.smaller_object import smaller_objects
 from utak.kb.localisation.score import (
     Judgement,
     LookedFrom,
@@ -38,7 +37,6 @@ from utak.kb.localisation.score import (
     with_others,
 )
 from utak.kb.localisation.state import TrackerState
-from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square
 
 MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts as clear of obstacles; tuned
@@ -93,7 +91,8 @@ def _outcomes(
     ends = contact_outcomes(contacts, state.place, held.polygon, motion)
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
     outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, held.polygon, motion)]
-    outcomes += [*_smaller(state, surprise.ranges, held, whole), *larger_objects(surprise, held, motion)]
+    assert whole.outcome is not None
+    outcomes += [*smaller_objects(surprise, held, motion, whole.outcome), *larger_objects(surprise, held, motion)]
     outcomes += parted_objects(surprise, held, motion)
     return outcomes
 
@@ -120,34 +119,10 @@ def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, mot
     return consistent_ends(surprise, ended)
 
 
-def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: Explanation) -> list[Explanation]:
-    """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing."""
-    outcome = whole.outcome
-    assert outcome is not None
-    lying = held.moved(outcome.polygon, held.slack, outcome.degrees, commanded=True)
-    less = refined_extent(state, lying, ranges, outcome.place)
-    if less is None:
-        return []
-    smaller = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
-    return [whole._replace(how="smaller", residual=0, contradicted=False, outcome=smaller)]
-
-
 def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:
     """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
     residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
     return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
-
-
-def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
-    """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it."""
-    frame, others, nothing = state.frame, state.others(held), NO_SQUARES
-    floor = state.occupancy.supposing(patch_of_polygon(held.polygon).squares())
-
-    def agrees(outline: Any) -> bool:
-        lying = replace(held, polygon=outline, slack=0.0, full=nothing, empty=nothing)
-        return not count_clashes(frame, floor, [*others, lying], place, ranges)
-
-    return held.told(agrees)
 
 
 def contact_suspects(state: TrackerState, held: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:

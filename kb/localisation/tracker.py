@@ -17,7 +17,6 @@ from utak.kb.localisation.after_carry import (
     explain_carry,
     moved_object,
     objects_astray,
-    refined_extent,
     turned_astray,
 )
 from utak.kb.localisation.after_walk import DeadReckoning, explain_walk
@@ -45,6 +44,7 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
 from utak.kb.localisation.hypotheses.what_if import command_motion
 from utak.kb.localisation.propose.lifted import MIN_KNOWN_LOOKS, look_at
 from utak.kb.localisation.propose.others import forgetting
+from utak.kb.localisation.propose.smaller_object import refined_extent
 from utak.kb.localisation.score import Judgement, residual_at
 from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.completions import Completions
@@ -286,7 +286,9 @@ class Tracker:
         self.update_object(moved_object(self.state, held, chosen, motion, ranges, suspected))
         self.state = replace(self.state, suspected_squares=self.state.suspected_squares | suspected, place=chosen.place)
         if chosen.outcome is not None and chosen.outcome.as_commanded:
-            refined = refined_extent(self.state, self.state.held_objects[name], ranges, self.state.place)
+            refined = refined_extent(
+                self.state.surprise(command, ranges), self.state.held_objects[name], self.state.place
+            )
             if refined is not None:
                 self.update_object(refined)
         self.state = replace(self.state, hypotheses=agreeing_origins(self.state, ranges))

@@ -95,7 +95,7 @@ class HeldObject:
     @property
     def lying_insets(self) -> SubcellExtent | None:
         """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid."""
-        quarters = self._quarters
+        quarters = self.quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
 
     @property
@@ -105,7 +105,7 @@ class HeldObject:
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
 
     @property
-    def _quarters(self) -> int | None:
+    def quarters(self) -> int | None:
         """The number of quarter turns by which it was turned, counter-clockwise positive; None when it lies askew."""
         quarters = round(self.turned / 90.0)
         return quarters if abs(self.turned - 90.0 * quarters) < GRID_CORNER_TOLERANCE else None
@@ -146,7 +146,7 @@ class HeldObject:
         nothing: frozenset[Square] = frozenset()
         placed = snap_to_grid(polygon)
         slack = max(otherwise, OUTLINE_TOLERANCE) if self.inexact else outline_tolerance(placed, otherwise)
-        if self.insets is not None and self._quarters is not None and self.insets.play:
+        if self.insets is not None and self.quarters is not None and self.insets.play:
             slack = max(slack, self.insets.play)
         return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
 
@@ -166,7 +166,7 @@ class HeldObject:
         """Return the object with the insets of its sides narrowed by an impression."""
         # None when the impression agrees with no outline of possible insets, or when insets say nothing of it: it lies
         # askew, its place is known only roughly, or its outline is of another frame.
-        quarters = self._quarters
+        quarters = self.quarters
         if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > COMMAND_ROUNDING:
             return None
         left = narrowed(self.insets.after(quarters), self.polygon, agrees)
@@ -175,7 +175,7 @@ class HeldObject:
     def inset(self, insets: SubcellExtent) -> "HeldObject | None":
         """Return the object with other possible insets, its sides moved to where they are then believed to lie."""
         # None when the result would be no outline, or when its sides are not parallel to the grid.
-        quarters = self._quarters
+        quarters = self.quarters
         if self.insets is None or quarters is None:
             return None
         change = inset_change(insets, self.insets)

@@ -31,10 +31,11 @@ class Explanation(NamedTuple):
 
     # Its kind, as in kb/asp/accommodation.lp: predicted (the motion went as commanded), blocked (it ended early),
     # slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or this
-    # one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held object is
-    # smaller or larger than it seemed), parted (as commanded, but the held object is only a part of what seemed one
-    # thing), changed (others moved things), lifted (others put the robot elsewhere), lost (it is not known where);
-    # or lost or anew after a new beginning.
+    # one in another frame, ended early), stuck (nothing moved), smaller (as commanded, or until something known stopped
+    # it, but the held object does not fill its squares), larger (as commanded, but the held object is larger than it
+    # seemed), parted (as commanded, but the held object is only a part of what seemed one thing), changed (others moved
+    # things), lifted (others put the robot elsewhere), lost (it is not known where); or lost or anew after a new
+    # beginning.
     how: str
     place: Position  # where the observation was made, (x, y) in squares, map frame of `frame`
     frame: Frame  # the frame by this explanation

@@ -4,6 +4,7 @@ In the order in which they are asked for:
 
 blocked  the newest motion was blocked: every possible end, with its chance
 contradicted_motion  a carrying motion was blocked, where the observation contradicts only what it itself settles
+smaller_object  a held object does not fill the squares in which it was seen
 larger_object  a held object goes on in what seemed to be wall
 parted_object  a held object is only a part of what seemed one thing
 frame  another frame, once objects were moved
