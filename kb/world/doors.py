@@ -82,11 +82,16 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
     return DoorwayNecks(found, screen)
 
 
-def _passages(screen: Screen) -> list[Passage]:
-    """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it."""
+def necks_of(screen: Screen) -> list[Passage]:
+    """Return the necks of a floor, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides."""
     doors = screen.passages(ENCODED_DOOR_RATIO)
     mouths = {frozenset(mouth) for passage in doors for mouth in passage.mouths}
-    others = [p for p in screen.passages(MIN_OPENING_RATIO) if not any(frozenset(m) in mouths for m in p.mouths)]
+    others = screen.passages(MIN_OPENING_RATIO)
+    return [*doors, *(p for p in others if not any(frozenset(m) in mouths for m in p.mouths))]
+
+
+def _passages(screen: Screen) -> list[Passage]:
+    """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it."""
     height, width = (size - 2 * NECK_UNSEEN_MARGIN for size in screen.shape)
 
     def within(passage: Passage) -> bool:
@@ -94,11 +99,8 @@ def _passages(screen: Screen) -> list[Passage]:
         ends = [point for mouth in passage.mouths for point in mouth]
         return all(0 < x < width and 0 < y < height for x, y in ends)
 
-    return [
-        p
-        for p in (passage.shifted(-NECK_UNSEEN_MARGIN, -NECK_UNSEEN_MARGIN) for passage in (*doors, *others))
-        if within(p)
-    ]
+    moved = (passage.shifted(-NECK_UNSEEN_MARGIN, -NECK_UNSEEN_MARGIN) for passage in necks_of(screen))
+    return [passage for passage in moved if within(passage)]
 
 
 def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:

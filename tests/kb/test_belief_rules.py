@@ -18,6 +18,13 @@ utak("POINT (9.5 10.5)", 0)."""
 ALCOVE = """table(34, 26).
 verge("POLYGON ((0 0, 0 26, 34 26, 34 0, 0 0), (2 2, 32 2, 32 16, 14 16, 14 24, 2 24, 2 2))").
 utak("POINT (9.5 9.5)", 0)."""
+CLOSET = (
+    """table(45, 24).
+verge("POLYGON ((0 0, 0 24, 45 24, 45 0, 0 0), """
+    """(2 2, 14 2, 14 8, 16 8, 16 2, 34 2, 34 8, 36 8, 36 7, 43 7, 43 14, 36 14, 36 13, 34 13, 34 22, """
+    """16 22, 16 13, 14 13, 14 22, 2 22, 2 2))").
+utak("POINT (32.5 10.5)", 0)."""
+)
 TWO_SQUARES = """table(40, 20). verge("POLYGON ((0 0, 0 20, 40 20, 40 0, 0 0), (2 2, 38 2, 38 18, 2 18, 2 2))").
 object(a, c, "POLYGON ((9 5, 12 5, 12 8, 9 8, 9 5))"). object(b, d, "POLYGON ((19 10, 22 10, 22 13, 19 13, 19 10))").
 utak("POINT (13.5 9.5)", 0)."""
@@ -177,3 +184,14 @@ def test_every_rule_of_the_page_has_a_test() -> None:
     assert [name for name in rules if f"belief_rules/{name}" not in text] == []
     tested = Path(__file__).read_text(encoding="utf-8")
     assert [name for name in rules if f"pair({int(name[:2])}, " not in tested] == []
+
+
+def test_what_is_as_wide_as_a_door_is_one() -> None:
+    """The closet beside the robot is a room of its own; without the rule it belongs to the room before it."""
+    scenario = utak.Scenario.from_text(world=CLOSET, start="", goal="in(utak, room(next)).")
+    without, with_it = pair(14, scenario, 2)
+    doors = [
+        sorted(fact.partition(",")[0] for fact in facts(one) if fact.startswith("door(")) for one in (without, with_it)
+    ]
+    assert doors == [["door(d1"], ["door(d1", "door(d2"]]
+    assert ["room(r3)." in facts(episode) for episode in (without, with_it)] == [False, True]
