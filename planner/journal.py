@@ -11,7 +11,7 @@ from utak.kb.localisation.state import TrackerState
 from utak.kb.tracing.decisions import SolverCall
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
-ROUTES_ENCODING = "routes"  # the encoding whose candidates are routes
+ROUTES_ENCODING = "walks"  # the encoding whose candidates are routes
 
 
 class Journal:
@@ -58,4 +58,4 @@ def _rounded(place: XY) -> XY:
 def _routes(call: SolverCall) -> list[dict[str, Any]]:
     """Return the routes of a decision, each with its points and whether it was chosen."""
     answer = call.answer or ()
-    return [{"points": points, "chosen": f"choose({number})" in answer} for number, points in enumerate(call.about)]
+    return [{"points": points, "chosen": f"walked({number})" in answer} for number, points in enumerate(call.about)]

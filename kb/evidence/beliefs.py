@@ -103,6 +103,8 @@ class FactExplainer:
             return [felt] if felt else [squares_reason(self.record, step, node)]
         if name in ("door", "width", "threshold", "connects", "crosses"):
             return self._door_reasons(name, arguments, step)
+        if name == "borders":
+            return self._facts([f"link({node},", f"rect({arguments[1]},"], step)
         if name == "corner":
             return self._corner_reasons(arguments, step)
         if name == "movable":

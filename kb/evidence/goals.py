@@ -17,7 +17,7 @@ AGENDA = "agenda"  # the encoding that chooses activities and verdicts
 CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
     AGENDA: ("do", "this activity was chosen"),
     "aims": ("choose", "this subgoal was chosen"),
-    "routes": ("choose", "this route was chosen"),
+    "walks": ("walked", "this way was chosen"),
     "transport": ("try", "geometry was asked for this way of carrying"),
     "feel": ("feel", "this halt was chosen to feel walls"),
     "boldness": ("take", "this manipulation plan was taken"),

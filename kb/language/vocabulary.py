@@ -198,8 +198,8 @@ MAP_PART_ARGUMENT = pattern_argument("region or part", "part[0-9]+|o[0-9]+_[0-9]
 # Where a thing may be that the task names: an object, a room, a door, or the verge.
 WHEREABOUTS_ARGUMENT = pattern_argument("place of a thing", "[odr][0-9]+|verge", "r1")
 STRETCH_ARGUMENT = pattern_argument("stretch of the bounds", "w[0-9]+", "w1")  # that was never felt
-JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
-LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
+JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+|here|there", "j1")  # of the pathgraph, or an end of a walk
+LINK_ARGUMENT = pattern_argument("link", "l[0-9]+(_[0-9]+)?", "l1")  # a link of the pathgraph, or a part of one
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
 LENGTH_ARGUMENT = integer_argument("a length in hundredths of squares", -(2**31), 2**31 - 1)  # Utak's frame
 COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)  # any 32-bit count
@@ -321,6 +321,7 @@ _DECLARED: Mapping[Signature, BeliefPredicate] = {
         (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
     ),
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
+    ("borders", 2): BeliefPredicate((LINK_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN),
     ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
     ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, MEANT_ARGUMENT), Openness.UNBOUND),
     ("may_be", 3): _uncertain(TASK_PARAMETER_ARGUMENT, WHEREABOUTS_ARGUMENT, open=Openness.NEVER),

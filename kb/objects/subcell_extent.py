@@ -47,8 +47,8 @@ class SubcellExtent(NamedTuple):
         # Two tuples, for further out and for further in, each of west, east, south, north. 0 for a side that is
         # believed to fill its squares, that is, to have the inset 0.
         here = self.believed
-        out = _as_sides(at - least if at else 0.0 for at, least in zip(here, self.least, strict=True))
-        return out, _as_sides(most - at if at else 0.0 for at, most in zip(here, self.most, strict=True))
+        out = as_sides(at - least if at else 0.0 for at, least in zip(here, self.least, strict=True))
+        return out, as_sides(most - at if at else 0.0 for at, most in zip(here, self.most, strict=True))
 
     @property
     def play(self) -> float:
@@ -107,7 +107,7 @@ def inset_outline(polygon: Any, sides: SideValues) -> Any:
 
 def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
     """Return an outline with its sides moved inwards, and by a margin more where they do not lie on grid lines."""
-    moved = inset_outline(polygon, _as_sides(far + margin for far in inwards))
+    moved = inset_outline(polygon, as_sides(far + margin for far in inwards))
     if moved is None:
         return None
     points, new = (shapely.get_coordinates(outline)[:-1] for outline in (polygon, moved))
@@ -133,14 +133,14 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
         return insets if agrees(polygon) else None
     left = []
     for parts in product(*halves):
-        part = SubcellExtent(_as_sides(p[0] for p in parts), _as_sides(p[1] for p in parts))
+        part = SubcellExtent(as_sides(p[0] for p in parts), as_sides(p[1] for p in parts))
         lying = inset_outline(polygon, inset_change(part, insets))
         if lying is not None and agrees(lying):
             left.append(part)
     if not left:
         return None
-    least = _as_sides(min(side) for side in zip(*(part.least for part in left), strict=True))
-    most = _as_sides(max(side) for side in zip(*(part.most for part in left), strict=True))
+    least = as_sides(min(side) for side in zip(*(part.least for part in left), strict=True))
+    most = as_sides(max(side) for side in zip(*(part.most for part in left), strict=True))
     return SubcellExtent(least, most)
 
 
@@ -151,7 +151,7 @@ def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]
     return [(least, most)]
 
 
-def _as_sides(values: Iterable[float]) -> SideValues:
+def as_sides(values: Iterable[float]) -> SideValues:
     """Return four values as a tuple (west, east, south, north); ValueError for any other number of values."""
     west, east, south, north = values
     return west, east, south, north

@@ -21,8 +21,10 @@ from utak.kb.language.terms import Symbol, Term
 from utak.kb.language.vocabulary import (
     BELIEF_PREDICATES,
     CONFIDENCE_ARGUMENT,
+    JUNCTION_ARGUMENT,
     KIND_ARGUMENT,
     LENGTH_ARGUMENT,
+    LINK_ARGUMENT,
     MAP_REGION_ARGUMENT,
     PLAN_PREDICATES,
     RESUMED_STEPS,
@@ -204,6 +206,18 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stands", 4): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NAME_ARGUMENT, AMOUNT_ARGUMENT),
         **{one: BELIEF_PREDICATES[one].arguments for one in [(name, 3) for name in CHANCES_OF] + [("plug", 2)]},
     },
+    "walks": {
+        **{one: BELIEF_PREDICATES[one].arguments for one in (("link", 5), ("crosses", 2), ("borders", 2))},
+        **{(name, 1): (JUNCTION_ARGUMENT,) for name in ("begins", "ends")},
+        **{(name, 1): (LINK_ARGUMENT,) for name in ("on", "avoid_link")},
+        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("walked", "last")},
+        **dict.fromkeys([("risk", 2), ("link_price", 2)], (LINK_ARGUMENT, AMOUNT_ARGUMENT)),
+        ("step", 3): (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT),
+        ("tight", 4): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
+        ("part", 2): (NUMBER_ARGUMENT, LINK_ARGUMENT),
+        ("through", 2): (NUMBER_ARGUMENT, PLAN_DOOR_ARGUMENT),
+        **{("not_through", 1): (PLAN_DOOR_ARGUMENT,), ("door_price", 2): (PLAN_DOOR_ARGUMENT, LENGTH_ARGUMENT)},
+    },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("weight", 2): (CONFIDENCE_ARGUMENT, AMOUNT_ARGUMENT),
@@ -360,6 +374,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
+    "walks": frozenset(USER_RULE_INTERFACES["walks"]) - {("avoid_link", 1), ("link_price", 2)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
 MADE_LAST = frozenset(
@@ -373,7 +388,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        **dict.fromkeys(("reconciliation", "chances"), WORLD_PREDICATES),
+        **dict.fromkeys(("reconciliation", "chances", "walks"), WORLD_PREDICATES),
         "task": WORLD_PREDICATES,
         "agenda": WORLD_PREDICATES,
     }.items()
@@ -381,25 +396,11 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
     {
-        ("region", 3),
-        ("stated", 2),
-        ("weight", 2),
-        ("choice", 2),
-        ("rest", 2),
-        ("alone", 1),
-        ("neck", 5),
-        ("convex", 3),
-        ("wanted", 1),
-        ("candidate", 2),
-        ("seen", 4),
-        ("fit", 4),
-        ("cut", 1),
-        ("length", 2),
-        ("unmoved", 2),
-        ("tried", 2),
+        ("region", 3), ("stated", 2), ("weight", 2), ("choice", 2), ("rest", 2), ("alone", 1), ("neck", 5),
+        ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4), ("cut", 1), ("length", 2),
+        ("unmoved", 2), ("tried", 2), ("described", 2), ("place", 3), ("counted_solid", 4),
+        ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
     }
-    | {("described", 2), ("place", 3)}
-    | {("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
-)
+)  # fmt: skip

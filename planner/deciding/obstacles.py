@@ -18,7 +18,7 @@ from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.goals.embedded import Supposition, supposed_in_walls
 from utak.planner.goals.placement import NOOK_RANGE, floor_leads_away, pull_out_pose
-from utak.planner.navigation.routes import PlannedRoute, find_routes
+from utak.planner.navigation.walks import PlannedRoute, single_route
 from utak.planner.screen.projection import UNSEEN_LEVEL, CostMaps, dilate
 from utak.planner.situation import Situation
 
@@ -73,7 +73,7 @@ def _routes_opened(
         return []
     far = np.where(beyond, without.distances[UNSEEN_LEVEL], 0)
     least = int(far[beyond].min()) + further * FIFTHS_PER_SQUARE
-    return find_routes(without, UNSEEN_LEVEL, np.flatnonzero(far >= min(least, int(far.max()))), "grid")
+    return [single_route(without, UNSEEN_LEVEL, np.flatnonzero(far >= min(least, int(far.max()))), "grid")]
 
 
 def _off_route(thing: Node, way: PlannedRoute, situation: Situation) -> Inside:

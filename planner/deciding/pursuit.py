@@ -9,15 +9,24 @@ from math import inf
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED
 from utak.kb.body import Command, Release
 from utak.kb.language.goal_words import ROBOT
+from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.world.model import WorldModel
 from utak.planner.deciding.search import contact_subgoals
 from utak.planner.decision import Decision, TaskVerdict, impossible
 from utak.planner.goals.bounds import telling_squares
 from utak.planner.navigation.fewest_moves import MOVE_COST, FewestMoves
 from utak.planner.navigation.loop_guard import LoopGuard
-from utak.planner.navigation.routes import PlannedRoute, choose_route, find_routes
 from utak.planner.navigation.sticky_route import StickyRoute, to_map_squares
 from utak.planner.navigation.subgoals import Subgoal, choose
+from utak.planner.navigation.walks import (
+    WALKS_ENCODING,
+    PlannedRoute,
+    WalkRules,
+    Walks,
+    choose_walk,
+    find_walks,
+    walks_along,
+)
 from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, next_move
 from utak.planner.screen.projection import SquareIndices
 from utak.planner.situation import Situation
@@ -89,12 +98,10 @@ class Pursuer:
         model, cost_maps = situation.model, situation.cost_maps
         reached = cost_maps.nearest(subgoal.squares)
         assert reached is not None
-        straight = None if fewest is None else fewest.way(subgoal)
+        straight = None if fewest is None or self._is_ruled(situation) else fewest.way(subgoal)
         route = None if straight is None else self.choose_route([straight], situation)
         route = route or self._route_left(subgoal, reached.level, situation)
-        route = route or self.choose_route(
-            find_routes(cost_maps, reached.level, subgoal.squares, self._paths), situation
-        )
+        route = route or self._choose(find_walks(cost_maps, reached.level, subgoal.squares, self._paths), situation)
         if route is None:
             why = f"{stage} cannot be attained: every route there leads through a forbidden door"
             return impossible(why, "every route there leads through a forbidden door")
@@ -106,6 +113,8 @@ class Pursuer:
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""
+        if self._is_ruled(situation):  # by links, which the rest of a route does not name
+            return None
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose_route([rest], situation) if rest is not None and situation.shut(ROBOT) else rest
 
@@ -114,13 +123,21 @@ class Pursuer:
         self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
     def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
-        """Return the route that planner/asp/routes.lp chooses; None when all lead through forbidden doors."""
-        if not offered:
-            return None
+        """Return which of some routes planner/asp/walks.lp chooses; None when all lead through forbidden doors."""
+        return self._choose(walks_along(offered), situation) if offered else None
+
+    def _choose(self, walks: Walks, situation: Situation) -> PlannedRoute | None:
+        """Return the walk that planner/asp/walks.lp chooses; None when every way is forbidden."""
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.shut(ROBOT))
         prices = {name: MOVE_COST * commands for name, commands in situation.door_prices.items()}
-        return choose_route(offered, situation.cost_maps, before, situation.doors, forbidden, prices)
+        files = situation.rules if self._is_ruled(situation) else ()
+        rules = WalkRules(forbidden, prices, files, situation.facts_for_rules(WALKS_ENCODING.stem) if files else ())
+        return choose_walk(walks, situation.cost_maps, before, situation.doors, rules)
+
+    def _is_ruled(self, situation: Situation) -> bool:
+        """Return whether rules of users speak of the links of walks."""
+        return rules_reach(WALKS_ENCODING.stem, situation.rules)
 
 
 def by_dearest_door(situation: Situation) -> list[tuple[int, Situation]]:

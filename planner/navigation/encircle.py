@@ -12,7 +12,7 @@ import numpy as np
 from utak.geometry.kernels.arrays import XY, Floats, Square
 from utak.geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
 from utak.kb.world.model import Node
-from utak.planner.navigation.routes import PlannedRoute
+from utak.planner.navigation.walks import PlannedRoute
 from utak.planner.screen.projection import UNSEEN_LEVEL, CostMaps
 
 

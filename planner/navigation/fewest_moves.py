@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from utak.geometry.kernels.arrays import Bools, Square
 from utak.geometry.raster.line_of_sight import straight
-from utak.planner.navigation.routes import PlannedRoute
 from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.navigation.walks import PlannedRoute
 from utak.planner.screen.moves import CARRYING_PACE, one_move_squares
 from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.subgoal_kind import SubgoalKind

@@ -7,8 +7,8 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Square
 from utak.kb.world.model import WorldModel
-from utak.planner.navigation.routes import PlannedRoute
 from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.navigation.walks import PlannedRoute
 from utak.planner.screen.projection import CostMaps, SquareIndices
 
 

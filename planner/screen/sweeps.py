@@ -7,7 +7,7 @@ A route becomes a path of edge-connected squares first. Then the longest safe mo
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
 
@@ -68,22 +68,24 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
         for column, row in squares_met(a, b)
         if 0 <= row < rows and 0 <= column < columns and free[row, column]
     } | {start, goal}
-    return _shortest_path(touched, start, goal)
+    return shortest_squares(touched.__contains__, start, goal.__eq__)
 
 
-def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Square]:
-    """Search the shortest edge-connected path within `squares` from `start` to `goal`, both included, breadth first."""
-    before = {start: start}
-    queue = deque([start])
-    while queue and goal not in before:
-        column, row = queue.popleft()
+def shortest_squares(
+    is_free: Callable[[Square], bool], start: Square, is_end: Callable[[Square], bool]
+) -> list[Square]:
+    """Search the shortest edge-connected path of free squares from a start to an end, both included, breadth first."""
+    before, queue, here = {start: start}, deque[Square](), start
+    while not is_end(here):
+        column, row = here
         for square in ((column + 1, row), (column, row + 1), (column - 1, row), (column, row - 1)):
-            if square in squares and square not in before:
-                before[square] = (column, row)
+            if square not in before and is_free(square):
+                before[square] = here
                 queue.append(square)
-    if goal not in before:
-        raise ValueError(f"the line leaves the free squares between {start} and {goal}")
-    path = [goal]
+        if not queue:
+            raise ValueError(f"no free squares lead from {start} to an end")
+        here = queue.popleft()
+    path = [here]
     while path[-1] != start:
         path.append(before[path[-1]])
     return path[::-1]

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from utak.geometry.motion.se2 import Motion, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, blocked_by_known
 from utak.kb.localisation.hypotheses.contacts import NO_SQUARES
@@ -17,7 +19,7 @@ from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject
-from utak.kb.objects.subcell_extent import SubcellExtent, inset_change
+from utak.kb.objects.subcell_extent import SubcellExtent, as_sides, inset_change
 
 
 def smaller_objects(surprise: Surprise, held: HeldObject, motion: Motion, whole: CarryOutcome) -> Iterator[Explanation]:
@@ -31,11 +33,9 @@ def smaller_objects(surprise: Surprise, held: HeldObject, motion: Motion, whole:
         return
     ends = list(_pressed(surprise, held, motion))
     if ends:
-        least, most = (
-            tuple(map(pick, zip(*sides, strict=True)))
-            for pick, sides in ((min, (end.insets.least for end in ends)), (max, (end.insets.most for end in ends)))
-        )
-        outcome = _end_against_known(surprise, held, motion, SubcellExtent(least, most)) or ends[len(ends) // 2]
+        extents = np.array([end.insets for end in ends])  # (ends, least and most, sides)
+        together = SubcellExtent(as_sides(extents[:, 0].min(0).tolist()), as_sides(extents[:, 1].max(0).tolist()))
+        outcome = _end_against_known(surprise, held, motion, together) or ends[len(ends) // 2]
         yield Explanation("smaller", outcome.place, surprise.frame, 0, outcome.distance, outcome)
 
 
@@ -53,16 +53,16 @@ def refined_extent(surprise: Surprise, held: HeldObject, place: Position) -> Hel
 
 def _pressed(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[CarryOutcome]:
     """Yield the ends of a push against something known if the sides ahead lie further in, by one step or more."""
-    insets = held.lying_insets
-    if insets is None or not isinstance(motion, Translate):
+    insets, quarters = held.lying_insets, held.quarters
+    if insets is None or quarters is None or not isinstance(motion, Translate):
         return
     ahead = (motion.dx < 0, motion.dx > 0, motion.dy < 0, motion.dy > 0)
     for step in range(math.ceil(1 / END_SPACING)):
         low, high = step * END_SPACING, (step + 1) * END_SPACING
-        least = tuple(max(side, low) if led else side for side, led in zip(insets.least, ahead, strict=True))
-        most = tuple(min(side, high) if led else side for side, led in zip(insets.most, ahead, strict=True))
+        least = as_sides(max(side, low) if led else side for side, led in zip(insets.least, ahead, strict=True))
+        most = as_sides(min(side, high) if led else side for side, led in zip(insets.most, ahead, strict=True))
         if all(few < many for few, many in zip(least, most, strict=True)):
-            end = _end_against_known(surprise, held, motion, SubcellExtent(least, most).after(-held.quarters))
+            end = _end_against_known(surprise, held, motion, SubcellExtent(least, most).after(-quarters))
             if end is not None:
                 yield end
 
@@ -72,8 +72,12 @@ def _end_against_known(
 ) -> CarryOutcome | None:
     """Return where something known stops an object with such insets; None if nothing does, or not as was seen."""
     less = held.inset(insets)
-    end = less and blocked_by_known(surprise.place, less.polygon, motion, surprise.obstructions.known)
-    told = end and refined_extent(surprise, less.moved(end.polygon, less.slack), end.place)
-    if not told or max(map(abs, inset_change(told.insets, less.insets))) < COMMAND_ROUNDING:
-        return told and end._replace(polygon=told.polygon, insets=told.insets)
+    if less is None:
+        return None
+    end = blocked_by_known(surprise.place, less.polygon, motion, surprise.obstructions.known)
+    told = None if end is None else refined_extent(surprise, less.moved(end.polygon, less.slack), end.place)
+    if end is None or told is None or told.insets is None:
+        return None
+    if max(map(abs, inset_change(told.insets, insets))) < COMMAND_ROUNDING:
+        return end._replace(polygon=told.polygon, insets=told.insets)
     return _end_against_known(surprise, held, motion, told.insets)  # where it is stopped if its sides lie there

@@ -260,7 +260,7 @@ def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questio
     for step, facts in enumerate(stated):
         for fact in facts:
             name, arguments = atom_parts(fact)
-            if name not in ("movable", "unseen", "crosses", "plan", "serves", "room"):
+            if name not in ("movable", "unseen", "crosses", "borders", "plan", "serves", "room"):
                 continue
             why = questions.why(fact, step)
             below = [reason.claim for reason in why.rests_on]
@@ -270,6 +270,8 @@ def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questio
                 assert [reason.kind for reason in why.rests_on] == [ReasonKind.MEASURED]
             elif name == "crosses":
                 assert [atom_parts(claim)[0] for claim in below] == ["link", "threshold"]
+            elif name == "borders":
+                assert [atom_parts(claim)[0] for claim in below] == ["link", "rect"]
             elif name == "plan":
                 settles = arguments[1].partition("(")[0] in SETTLING_STEPS
                 assert settles != (" geometry " in why.because)

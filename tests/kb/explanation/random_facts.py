@@ -9,6 +9,7 @@ from tests.encoding_cases import ENCODINGS
 
 BY_NAME = {path.stem: path for path in ENCODINGS}
 HOW = ("predicted", "blocked", "slipped", "turned", "misled", "smaller", "larger", "stuck")
+LINKS = ("l1", "l2")
 EXPLANATIONS, REGIONS, NODES, THINGS, NUMBERS = (1, 2, 3), ("a", "b", "c"), ("n1", "n2"), ("x", "y"), (1, 2, 3)
 CLASSES, PROPERTIES, VALUES = ("square", "brick", "disc"), ("shape", "colour"), ("square", "g")
 KINDS, PLACES, LEVELS, WAYS = ("attain", "explore", "pass", "settle"), ("g", "h"), (0, 1, 2), ("clear", "aside")
@@ -63,9 +64,10 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "plan": (NUMBERS, (3, 4, 8)), "hopes": (NUMBERS,), "askew": (NUMBERS,), "short": (NUMBERS,),
         "aside": (NUMBERS,),
     },
-    "routes": {
-        "route": (NUMBERS, (40, 60), (5, 20), (0, 30)), "through": (NUMBERS, ("d1", "d2")),
-        "not_through": (("d1", "d2"),), "last": (NUMBERS,),
+    "walks": {
+        "begins": (("j1",),), "ends": (("j2",),), "link": (LINKS, ("j1",), ("j2", "j3"), (400, 600), (50, 200)),
+        "crosses": (LINKS, ("d1", "d2")), "tight": (NUMBERS, (400, 600), (50, 200), (0, 30)), "part": (NUMBERS, LINKS),
+        "through": (NUMBERS, ("d1", "d2")), "not_through": (("d1", "d2"),), "last": (NUMBERS,), "avoid_link": (LINKS,),
     },
     "transport": {
         "option": (PLACES, LEVELS, WAYS, (20, 90)), "refuted": (PLACES, LEVELS, WAYS),
@@ -89,7 +91,7 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "agenda": {"do": (ACTIVITIES,), "stage_attained": (), "verdict": (("done", "limit", "impossible", "possible_if"),)},
     "feel": {"feel": (NUMBERS,)},
     "boldness": {"take": (NUMBERS,)},
-    "routes": {"choose": (NUMBERS,)},
+    "walks": {"step": (LINKS, ("j1",), ("j2", "j3")), "walked": (NUMBERS,)},
     "transport": {"try": (PLACES, LEVELS, WAYS)},
 }  # fmt: skip
 

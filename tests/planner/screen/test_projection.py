@@ -16,8 +16,8 @@ from tests.tables import few
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.world.model import WorldModel
 from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
-from utak.planner.navigation.routes import choose_route, find_routes
 from utak.planner.navigation.subgoals import Subgoal, choose
+from utak.planner.navigation.walks import WalkRules, choose_walk, find_walks, walks_along
 from utak.planner.screen.moves import (
     CARRYING_PACE,
     LEEWAY_TOLERANCE,
@@ -116,7 +116,7 @@ def test_a_move_sweeps_only_safe_squares(kind: str, pace: Pace) -> None:
     model = known_model(HALL)
     cost_maps = CostMaps(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
-        for way in find_routes(cost_maps, 0, flat(model, *goal), "skeleton"):
+        for way in find_walks(cost_maps, 0, flat(model, *goal), "skeleton").routes:
             move = next_move(cost_maps, way.squares, way.level, kind, pace=pace)
             east, north = round(move.east), round(move.north)
             assert (east, north) == (move.east, move.north)
@@ -132,7 +132,7 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
     squares = np.flatnonzero(cost_maps.floor)
     rng = np.random.default_rng(seed)
     for goal in rng.choice(squares, size=min(4, len(squares)), replace=False):
-        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton"):
+        for way in find_walks(cost_maps, 0, np.array([goal]), "skeleton").routes:
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, way.level, "attain")
@@ -144,23 +144,23 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
 def test_routes_are_free_connected_and_distinct() -> None:
     model = known_model(HALL)
     cost_maps = CostMaps(model)
-    found = find_routes(cost_maps, 0, flat(model, 12, -1), "skeleton")
+    found = find_walks(cost_maps, 0, flat(model, 12, -1), "skeleton").routes
     assert len(found) >= 2
     for way in found:
         assert way.squares[0] == cost_maps.here
         assert all(cost_maps.free(0)[y, x] for x, y in way.squares)
         assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
     assert found[0].length <= found[1].length
-    chosen = choose_route(found, cost_maps, frozenset(), (), frozenset())
+    chosen = choose_walk(walks_along(found), cost_maps, frozenset(), (), WalkRules())
     assert chosen == found[0]
-    sticky = choose_route(found[:2], cost_maps, frozenset(found[1].squares), (), frozenset())
+    sticky = choose_walk(walks_along(found[:2]), cost_maps, frozenset(found[1].squares), (), WalkRules())
     assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
 
 
 def test_the_route_to_the_own_square_has_one_square() -> None:
     model = known_model(HALL)
     cost_maps = CostMaps(model)
-    (way,) = find_routes(cost_maps, 0, flat(model, 0, 0), "skeleton")
+    (way,) = find_walks(cost_maps, 0, flat(model, 0, 0), "skeleton").routes
     assert way.squares == (cost_maps.here,)
     assert way.length == 0
 
@@ -294,7 +294,7 @@ def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leewa
     model = replace(known_model(HALL), leeway=leeway)
     cost_maps = CostMaps(model)
     for goal in ((4, 3), (-3, -2), (5, -4)):
-        way = find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0]
+        way = find_walks(cost_maps, 0, flat(model, *goal), "skeleton").routes[0]
         move = next_move(cost_maps, way.squares, way.level, "explore")
         whole = next_move(cost_maps, way.squares, way.level, "attain")
         assert (whole.east, whole.north) == (round(whole.east), round(whole.north))
@@ -308,7 +308,9 @@ def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leewa
             )
         assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LEEWAY_TOLERANCE
     assert any(
-        next_move(cost_maps, find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, 0, "explore").east
+        next_move(
+            cost_maps, find_walks(cost_maps, 0, flat(model, *goal), "skeleton").routes[0].squares, 0, "explore"
+        ).east
         % 1
         for goal in ((4, 3), (-3, -2), (5, -4))
     ) == (max(leeway) > LEEWAY_TOLERANCE)
@@ -319,7 +321,7 @@ def test_no_move_ends_near_a_grid_line_at_any_turn_while_the_orientation_is_unce
     cost_maps = CostMaps(model)
     whole = 0
     for goal in np.flatnonzero(cost_maps.floor).tolist():
-        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
+        for way in find_walks(cost_maps, 0, np.array([goal]), "skeleton").routes[:1]:
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, way.level, "explore")
@@ -341,7 +343,7 @@ def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_b
     clear_of = ~dilate(~cost_maps.safe, 1)
     longest, near = 0.0, []
     for goal in np.flatnonzero(cost_maps.floor).tolist():
-        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
+        for way in find_walks(cost_maps, 0, np.array([goal]), "skeleton").routes[:1]:
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, way.level, "explore", pace=pace)
@@ -401,7 +403,7 @@ def test_no_move_ends_near_an_edge_where_the_next_square_may_stop_it() -> None:
     model = replace(known_model(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
     cost_maps = CostMaps(model)
     for goal in np.flatnonzero(cost_maps.floor).tolist():
-        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
+        for way in find_walks(cost_maps, 0, np.array([goal]), "skeleton").routes[:1]:
             if len(way.squares) > 1:
                 move = next_move(cost_maps, way.squares, way.level, "explore")
                 here = (cost_maps.here[0] + 0.5, cost_maps.here[1] + 0.5)

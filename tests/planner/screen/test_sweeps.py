@@ -90,5 +90,5 @@ def test_a_line_along_an_edge_uses_the_free_side() -> None:
 
 def test_a_line_through_a_wall_is_refused() -> None:
     free = np.array([[True, False, True]])
-    with pytest.raises(ValueError, match="leaves the free squares"):
+    with pytest.raises(ValueError, match="no free squares lead"):
         squares_along(free, [(0.5, 0.5), (2.5, 0.5)])

@@ -1,6 +1,6 @@
 """Rooms of labelled floors: how many are cut as their labels say, by kb/asp/rooms.lp on a map that is known.
 
-    python -m benchmarks.labelled_floors FOLDER [--kb docs/belief_rules/14_as_wide_as_doors.lp] [--greatest SQUARES]
+    python -m benchmarks.priors.labelled_floors FOLDER [--kb FILE] [--greatest SQUARES]
 
 FOLDER holds .npz files with `wall` (rows, columns) bool and `room` (rows, columns), the label of each square, else 0.
 A room is an edge-connected part of one label. It is cut right when intersection over union with a part is 0.8 or more.
@@ -19,10 +19,10 @@ from utak.geometry.raster.components import components
 from utak.kb.reasoning.encodings import KB_ENCODINGS
 from utak.kb.reasoning.solver import solve
 from utak.kb.world.doors import necks_of
+from utak.kb.world.model import hundredths
 
 LEAST_OVERLAP = 0.8  # intersection over union from which a room counts as cut right (a convention)
 LEAST_ROOM = 200  # squares: smaller labelled parts are no rooms (a convention)
-UNITS = 100  # of a square in the facts of kb/asp/rooms.lp
 
 
 def doors(screen: Screen, rules: Sequence[Path]) -> list[Passage]:
@@ -30,7 +30,7 @@ def doors(screen: Screen, rules: Sequence[Path]) -> list[Passage]:
     necks = necks_of(screen)
     facts = []
     for number, neck in enumerate(necks):
-        width, one, other = (round(UNITS * size) for size in (neck.width, *(2 * side for side in neck.sides)))
+        width, one, other = (hundredths(size) for size in (neck.width, *(2 * side for side in neck.sides)))
         facts.append(f"neck({number},{width},{one},{other},100)")
     answer = solve([KB_ENCODINGS / "rooms.lp", *rules], facts) or ()
     return [necks[number] for number in sorted({a.arguments[0].number for a in answer if a.match("door", 2)})]
@@ -54,7 +54,9 @@ def is_cut_right(room: Bools, parts: Labels) -> bool:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Print for each floor how many of its rooms are cut right, and the sum; return 0."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.labelled_floors", description="Rooms of real floors.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.priors.labelled_floors", description="Rooms of real floors."
+    )
     parser.add_argument("folder", type=Path, help="the floors, .npz files")
     parser.add_argument("--kb", type=Path, action="append", default=[], help="rules of users")
     parser.add_argument("--greatest", type=int, default=700_000, help="squares of the greatest floor (%(default)s)")
