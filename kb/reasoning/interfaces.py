@@ -216,7 +216,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("tight", 4): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
         ("part", 2): (NUMBER_ARGUMENT, LINK_ARGUMENT),
         ("through", 2): (NUMBER_ARGUMENT, PLAN_DOOR_ARGUMENT),
-        **{("not_through", 1): (PLAN_DOOR_ARGUMENT,), ("door_price", 2): (PLAN_DOOR_ARGUMENT, LENGTH_ARGUMENT)},
+        ("not_through", 1): (PLAN_DOOR_ARGUMENT,),
+        ("door_price", 2): (PLAN_DOOR_ARGUMENT, LENGTH_ARGUMENT),
     },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
@@ -388,9 +389,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        **dict.fromkeys(("reconciliation", "chances", "walks"), WORLD_PREDICATES),
-        "task": WORLD_PREDICATES,
-        "agenda": WORLD_PREDICATES,
+        **dict.fromkeys(("reconciliation", "chances", "walks", "task", "agenda"), WORLD_PREDICATES),
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.

@@ -10,7 +10,7 @@ import pytest
 import scripted_robot
 from random_scenes import write_scene
 
-from utak.planner.navigation.routes import PATH_FINDERS
+from utak.planner.navigation.walks import SINGLE_PATH_FINDERS
 from utak.simulator.cli.main import main
 from utak.simulator.scenario.settings import PATH_CHOICES
 
@@ -138,4 +138,4 @@ def test_installed_name_and_environment() -> None:
 
 
 def test_the_command_line_offers_every_path_finder_of_the_planner() -> None:
-    assert set(PATH_CHOICES) == set(PATH_FINDERS)
+    assert set(PATH_CHOICES) == {"skeleton", *SINGLE_PATH_FINDERS}
