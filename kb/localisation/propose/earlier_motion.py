@@ -6,28 +6,26 @@ again with the correction, for what blocked the one may have blocked the other, 
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence, Set
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obstructions, square_polygon
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
+from utak.kb.localisation.hypotheses.explanation import Explanation, likeliest_first
 from utak.kb.localisation.hypotheses.frames import (
     Observation,
     Position,
     any_origin,
     consistent_hypotheses,
-    exact_hypothesis,
     frames_to_try,
     observation_squares,
 )
 from utak.kb.localisation.hypotheses.recognition import places_within
 from utak.kb.localisation.hypotheses.reestimation import (
-    ReestimatedWalk,
-    WalkCorrection,
     WalkEnd,
     WalkInFrame,
+    reestimate_two_walks,
     remap_if_consistent,
 )
 from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, object_at, remap
@@ -38,7 +36,8 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     observation_places,
     slipped_ends,
 )
-from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf, count_clashes
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, is_simple, with_chance
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
@@ -48,30 +47,96 @@ MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with 
 MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bounds the time; tuned
 
 
-class ReestimatedMotion(NamedTuple):
-    """A re-estimated earlier motion, and the evaluation of everything else with it."""
+def reestimate_motions(situation: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
+    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame."""
+    tried = [motion for motion in reversed(motions) if _has_known_pose(motion, situation)]
+    found = (with_chance(situation.state, one) for motion in tried for one in _other_ends(situation, motion))
+    return sorted(found, key=lambda one: not one.contact_known)
 
-    walk: ReestimatedWalk  # the correction of the earlier motion
-    what_if: WhatIf  # the evaluation of the newest observation with it
+
+def propose(
+    situation: ObservedSituation,
+    reestimate: Callable[[ObservedSituation, Sequence[MotionHypothesis]], list[Explanation]] = reestimate_motions,
+) -> list[Explanation]:
+    """Return the explanations by which an earlier motion ended elsewhere than believed."""
+    state = situation.state
+    if not state.held_objects:
+        return _earlier_walks(situation) if situation.walked else []
+    simple = [one for one in situation.found if is_simple(state, one)]
+    here = [one for one in simple if one.frame == state.frame]
+    if here:
+        known = any(one.chance is not None for one in here)
+        return [] if known else [one for one in reestimate(situation, state.doubtful) if one.chance is not None]
+    found = reestimate(situation, state.earlier)
+    return found if found or simple else reestimate_with_origin(situation, state.earlier)
+
+
+def propose_stopped(situation: ObservedSituation) -> list[Explanation]:
+    """Return other ends of walks that are believed to have been stopped, if one of them leaves nothing unexplained."""
+    stopped = [motion for motion in situation.state.earlier if motion.blocked]
+    ends = (one for motion in stopped for one in situation.other_ends(motion))
+    return _blocked_elsewhere(situation, stopped) if any(not one.residual for one in ends) else []
+
+
+def propose_slips(situation: ObservedSituation) -> list[Explanation]:
+    """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
+    motions = reversed(situation.state.earlier)
+    tried = (motion for motion in motions if _has_known_pose(motion, situation))
+    return [one for motion in tried for one in _slips(situation, motion)]
+
+
+def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
+    """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
+    state = situation.state
+    turned = [one for one in situation.found if one.remaps]
+    if all(one.unexplained for one in turned):
+        simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
+        return _blocked_elsewhere(situation, state.earlier if simple else state.reestimable)
+    met = [one for one in _blocked_elsewhere(situation, state.reestimable) if one.contact_known or one.chance]
+    if state.off_middle or not all(one.is_odd for one in turned):
+        met = [one for one in met if one.frame == state.frame]
+    return met or _both_blocked(situation)
+
+
+def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHypothesis]) -> list[Explanation]:
+    """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed."""
+    state = situation.state
+    judged = len(state.observations) if any(one.is_end for one in situation.found) else None
+    found = likeliest_first([one for motion in motions for one in situation.other_ends(motion)])
+    others = [(one, one.correction) for one in found if one.correction is not None]
+    return [with_chance(state, one) for one, other in others if other.since != judged or one.frame != state.frame]
+
+
+def _both_blocked(situation: ObservedSituation) -> list[Explanation]:
+    """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame."""
+    state, newest = situation.state, situation.state.motions[-1]
+    believed = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
+    pairs = [(motion, hypothesis) for hypothesis in believed for motion in reversed(state.earlier)]
+    observations, ahead = situation.observations, state.frame.place_from_utak(*situation.observation.place)
+    found = (one for motion, h in pairs for one in reestimate_two_walks(motion, newest, h, observations))
+    return [
+        one._replace(distance=one.distance + math.dist(one.place, ahead), hypotheses=state.hypotheses, prior_cost=0.0)
+        for one in found
+    ]
 
 
 class CarriedMotion:
     """An earlier straight motion with an object in hand, in the believed frame."""
 
-    def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
+    def __init__(self, motion: MotionHypothesis, situation: ObservedSituation) -> None:
         """Find the ends of a motion with an object in hand."""
         assert motion.in_hand is not None
         frame, observations, held_objects = (
-            surprise.frame,
-            surprise.observations[: motion.number],
-            surprise.held_objects,
+            situation.state.frame,
+            situation.state.observations[: motion.number],
+            situation.state.held_objects,
         )
         pose = next(pose for pose in observations[-1].moved if pose.name == motion.in_hand)
         self._place = frame.place_from_utak(*observations[-1].place)
         self._polygon = object_at(held_objects[motion.in_hand], pose, frame).polygon
         self._motion = Translate(*frame.to_map(*motion.shift))
         before = remap(
-            frame, frame, observations, held_objects.values(), surprise.prefixes.first(motion.number)
+            frame, frame, observations, held_objects.values(), situation.prefixes.first(motion.number)
         ).occupancy
         contacts = self._obstructions(before).contacts(self._place, self._polygon, self._motion)
         likely = (contact.fraction for contact in sorted(contacts, key=lambda contact: -contact.chance))
@@ -105,148 +170,143 @@ class CarriedMotion:
         return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
 
-def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame."""
-    tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
-    found = [one for motion in tried for one in _other_ends(surprise, motion)]
-    return sorted(found, key=lambda one: not one.walk.contact_known)
-
-
-def reestimate_slips(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
-    tried = (motion for motion in reversed(motions) if _has_known_pose(motion, surprise))
-    return [one for motion in tried for one in _slips(surprise, motion)]
-
-
-def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+def reestimate_with_origin(situation: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
     """Return other ends, with another frame origin, of the newest carrying motion that explains everything so."""
     # Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
     # squares; where the observations since were made depends on the origin.
-    tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
-    found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
-    return sorted(next(filter(None, found), []), key=lambda one: not one.walk.contact_known)
+    tried = (
+        motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, situation)
+    )
+    found = ([*_ends_with_origin(situation, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
+    ends = (with_chance(situation.state, one) for one in next(filter(None, found), []))
+    return sorted(ends, key=lambda one: not one.contact_known)
 
 
-def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
+def _has_known_pose(motion: MotionHypothesis, situation: ObservedSituation) -> bool:
     """Return whether the pose of the object in hand before a motion is known; True for an empty hand."""
-    before = surprise.observations[motion.number - 1].moved
+    before = situation.state.observations[motion.number - 1].moved
     return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
 
 
-def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+def _other_ends(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
-    observations, frame = surprise.observations, surprise.frame
-    believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
+    observations, frame = situation.state.observations, situation.state.frame
+    believed, first = observations[motion.number].place, situation.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
         return
-    way = WalkInFrame(motion, frame, observations) if motion.in_hand is None else CarriedMotion(motion, surprise)
+    way = WalkInFrame(motion, frame, observations) if motion.in_hand is None else CarriedMotion(motion, situation)
     judged: dict[Position, RemappedMap | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < LINE_DISTANCE:  # as believed
             continue
-        corrected, correction = _corrected(surprise, motion, end)
+        corrected, correction = _corrected(situation, motion, end)
         if shift not in judged:
             judged[shift] = _consistent_map(corrected, first)
         under = judged[shift]
         if under is None:
             continue
-        ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.observations, motion, frame))
+        ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.state.observations, motion, frame))
         if ahead == FREE:
             continue
-        supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
-        what_if = supposed.evaluate_frame(frame, surprise.hypotheses, only_whether=True)
-        if not what_if.residual:
-            walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
-            yield ReestimatedMotion(walk, what_if)
+        supposed = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
+        newest = supposed.evaluate_frame(frame, situation.state.hypotheses, only_whether=True)
+        if not newest.residual:
+            yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
-def _consistent_map(corrected: Surprise, begun: MapReplay) -> RemappedMap | None:
+def _consistent_map(corrected: ObservedSituation, begun: MapReplay) -> RemappedMap | None:
     """Return the map of all corrected observations, in the believed frame; None where one contradicts the others."""
-    held_objects = corrected.held_objects.values()
+    held_objects = corrected.state.held_objects.values()
     under = remap_if_consistent(
-        corrected.frame, corrected.observations, held_objects, corrected.unsettled_discs, begun=begun
+        corrected.state.frame, corrected.state.observations, held_objects, corrected.unsettled_discs, begun=begun
     )
     return None if under is None or under.residual else under
 
 
-def _slips(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+def _slips(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield ends whole squares beside the commanded end of one motion, with which no observation is contradicted."""
-    frame, first = surprise.frame, surprise.prefixes.first(motion.number)
+    frame, first = situation.state.frame, situation.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
         return
-    end = add(surprise.observations[motion.number - 1].place, motion.shift)
+    end = add(situation.state.observations[motion.number - 1].place, motion.shift)
     for place in slipped_ends(frame.place_from_utak(*end)):
-        corrected, correction = _corrected(surprise, motion, WalkEnd(frame.place_to_utak(*place), 1))
+        corrected, correction = _corrected(situation, motion, WalkEnd(frame.place_to_utak(*place), 1))
         under = _consistent_map(corrected, first)
         if under is None:
             continue
-        supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
-        for what_if in _newest_after_slip(supposed):
-            if not what_if.residual:
-                yield ReestimatedMotion(ReestimatedWalk(exact_hypothesis(frame), correction, False, 0), what_if)
-                break
+        supposed = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
+        newest = next((one for one in _newest_after_slip(supposed) if not one.residual), None)
+        if newest is not None:
+            yield _earlier("slipped", newest, correction, contact_known=False)
 
 
-def _newest_after_slip(supposed: Surprise) -> Iterator[WhatIf]:
-    """Yield what contradicts the newest observation after a slip, the likeliest place first."""
-    frame, held_objects = supposed.frame, supposed.held_objects.values()
+def _newest_after_slip(supposed: ObservedSituation) -> Iterator[Explanation]:
+    """Yield where the newest observation may have been made after a slip, the likeliest place first."""
+    state, frame = supposed.state, supposed.state.frame
     if supposed.carried is not None:
-        yield supposed.evaluate_frame(frame, supposed.hypotheses, only_whether=True)
+        yield supposed.evaluate_frame(frame, state.hypotheses, only_whether=True)
         return
     # Where in its square the robot was after the slip is not known.
     for place in places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5)):
-        clashes = count_clashes(frame, supposed.occupancy, held_objects, place, supposed.ranges)
-        yield WhatIf(frame, supposed.hypotheses, place, None, clashes, searched=False)
+        clashes = count_clashes(frame, state.occupancy, state.held_objects.values(), place, supposed.ranges)
+        yield Explanation("slipped", place, frame, clashes, 0.0, None, state.hypotheses)
 
 
-def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+def _earlier(how: str, newest: Explanation, correction: WalkCorrection, contact_known: bool) -> Explanation:
+    """Return the explanation that an earlier motion ended otherwise, and the newest observation was made so then."""
+    distance = math.hypot(*correction.shift)
+    return newest._replace(how=how, distance=distance, correction=correction, contact_known=contact_known)
+
+
+def _ends_with_origin(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
-    origins = any_origin((surprise.frame.angle,))
-    for end in CarriedMotion(motion, surprise).ends:
-        corrected, correction = _corrected(surprise, motion, end)
+    believed = situation.state.frame
+    origins, first = any_origin((believed.angle,)), situation.prefixes.first(motion.number)
+    for end in CarriedMotion(motion, situation).ends:
+        corrected, correction = _corrected(situation, motion, end)
         left = consistent_hypotheses(corrected.judging_observations, origins, corrected.unsettled_discs)
         if not left:
             continue
-        first = surprise.prefixes.first(motion.number)
-        under = remap(surprise.frame, surprise.frame, corrected.observations, corrected.held_objects.values(), first)
-        corrected = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
-        for frame in frames_to_try(left, surprise.frame)[:MAX_FRAMES_PER_END]:
-            what_if = corrected.evaluate_frame(frame, left, only_whether=True)
-            if what_if.residual:
+        observations, held_objects = corrected.state.observations, corrected.state.held_objects.values()
+        under = remap(believed, believed, observations, held_objects, first)
+        corrected = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
+        for frame in frames_to_try(left, believed)[:MAX_FRAMES_PER_END]:
+            newest = corrected.evaluate_frame(frame, left, only_whether=True)
+            if newest.residual:
                 continue
             under = corrected.remapped(frame)
-            there = replace(corrected, frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)
-            things = _moved_since(under, corrected.observations, motion, frame)
+            there = corrected.supposing(frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)
+            things = _moved_since(under, observations, motion, frame)
             ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, things)
             if ahead != FREE:
-                walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
-                yield ReestimatedMotion(walk, what_if)
+                yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
-def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
-    """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since."""
+def _corrected(
+    situation: ObservedSituation, motion: MotionHypothesis, end: WalkEnd
+) -> tuple[ObservedSituation, WalkCorrection]:
+    """Return the situation as it is if an earlier motion ended at `end`, and the correction of everything since."""
     # The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion.
-    frame, believed = surprise.frame, surprise.observations[motion.number].place
+    state = situation.state
+    frame, believed = state.frame, state.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
-    since = [held for held in surprise.held_objects.values() if held.since > motion.number]
-    seen = tuple((held.name, _object_shift(held, shift, surprise)) for held in since)
+    since = [held for held in state.held_objects.values() if held.since > motion.number]
+    seen = tuple((held.name, _object_shift(held, shift, state)) for held in since)
     correction = WalkCorrection(motion.number, shift, seen, motion.in_hand)
-    there, held_objects = (
-        correction.observations(surprise.observations),
-        correction.held_objects(surprise.held_objects, frame),
-    )
-    place = frame.place_from_utak(*correction.place(frame.place_to_utak(*surprise.place)))
-    return replace(surprise, place=place, observations=there, held_objects=held_objects), correction
+    there = tuple(correction.observations(state.observations))
+    place = frame.place_from_utak(*correction.place(frame.place_to_utak(*state.place)))
+    held_objects = correction.held_objects(state.held_objects, frame)
+    return situation.supposing(place=place, observations=there, held_objects=held_objects), correction
 
 
-def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Position:
+def _object_shift(held: HeldObject, shift: Position, state: TrackerState) -> Position:
     """Return the shift of an object when the observation that showed it was made `shift` away."""
     # An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
     # the observation is made.
     if not is_grid_aligned(held.first):
         return shift
-    frame, observation = surprise.frame, surprise.observations[held.since - 1]
+    frame, observation = state.frame, state.observations[held.since - 1]
     elsewhere = observation._replace(place=add(observation.place, shift))
     (west, south), (east, north) = observation_squares(frame, [observation, elsewhere])
     return frame.to_utak(float(east - west), float(north - south))

@@ -43,17 +43,15 @@ def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) ->
         observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
     assume(math.dist(own, way) > 2 * LINE_DISTANCE)
     found = list(reestimate_walk(MotionHypothesis(1, way, CENTRED_HYPOTHESES), Frame(), observations))
-    right = [
-        one
-        for one in found
-        if one.hypothesis.angle == heading and math.dist(one.correction.observations(observations)[1].place, own) < 1e-3
-    ]
+    told = [(one, one.correction.observations(observations)) for one in found if one.correction is not None]
+    assert len(told) == len(found)
+    right = [one for one, there in told if one.frame.angle == heading and math.dist(there[1].place, own) < 1e-3]
     assert right
-    assert all(one.correction.since == 1 and one.residual == 0 for one in right)
-    for one in found:
-        assert not count_contradictions(one.hypothesis.frame, one.correction.observations(observations))
-        assert one.correction.observations(observations)[0] == observations[0]
-        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > LINE_DISTANCE
+    assert all(one.correction and one.correction.since == 1 and one.residual == 0 for one in right)
+    for one, there in told:
+        assert not count_contradictions(one.frame, there)
+        assert there[0] == observations[0]
+        assert math.dist(there[2].place, observations[2].place) > LINE_DISTANCE
 
 
 def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
@@ -87,14 +85,15 @@ def test_two_contacts_in_a_row_are_reestimated_together(seed: int) -> None:
     observations = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
     motions = MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), MotionHypothesis(2, into, CENTRED_HYPOTHESES[:1])
     found = list(reestimate_two_walks(*motions, CENTRED_HYPOTHESES[0], observations))
-    for one in found:
-        told = [*one.correction.observations(observations)[:2], observations[2]._replace(place=one.newest)]
+    ends = [(one, one.correction, one.frame.place_to_utak(*one.place)) for one in found if one.correction is not None]
+    for one, correction, newest in ends:
+        told = [*correction.observations(observations)[:2], observations[2]._replace(place=newest)]
         assert one.contact_known
         assert not count_contradictions(Frame(), told)
     known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
     short = away[0] - way[0], away[1] - way[1]
     assert not known or any(
-        math.dist(one.correction.shift, short) < 1e-6 and math.dist(one.newest, away) < 1e-6 for one in found
+        math.dist(correction.shift, short) < 1e-6 and math.dist(newest, away) < 1e-6 for _, correction, newest in ends
     )
 
 

@@ -17,25 +17,26 @@ from tests.kb.localisation.propose.test_earlier_motion import (
     observe,
     plus,
     room_with_a_thing,
+    situated,
     square_of,
-    surprised,
 )
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
 from utak.kb.body import Move, Push, Turn
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST
 from utak.kb.localisation.hypotheses.remap import object_pose
-from utak.kb.localisation.hypotheses.what_if import Surprise
-from utak.kb.localisation.propose.frame import blocked_pushes_with_origin
-from utak.kb.localisation.propose.origin import COARSE_ORIGINS
+from utak.kb.localisation.known.situation import ObservedSituation
+from utak.kb.localisation.propose.origin import COARSE_ORIGINS, blocked_pushes_with_origin, propose
 from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.frame import CENTRE, Frame
 
 Point = tuple[float, float]
 
 
-def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
-    """Return the surprise after a contact of Utak in a push, the true place and outline then; None without a contact.
+def blocked_push_of_utak(
+    rng: np.random.Generator, beside: Point
+) -> tuple[ObservedSituation, Point, shapely.Polygon] | None:
+    """Return the situation after a contact of Utak in a push, the true place and outline then; None without a contact.
 
     beside : the true origin.
     """
@@ -55,7 +56,7 @@ def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surpr
     observations = [first, first._replace(moved=(object_pose(held, Frame()),))]
     after = observe(around(translate(thing, *went), room), plus(origin, went), way)
     there = plus(beside, went)
-    return surprised(Push(*way), after, observations, held, in_hand=True), there, translate(lies, *went)
+    return situated(Push(*way), after, observations, held, in_hand=True), there, translate(lies, *went)
 
 
 @pytest.mark.long
@@ -64,25 +65,25 @@ def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surpr
 def test_a_contact_of_utak_in_a_push_is_found_with_the_origin(seed: int, beside: Point) -> None:
     rng = np.random.default_rng(seed)
     made = (blocked_push_of_utak(rng, beside) for _ in range(2000))
-    surprise, there, thing = next(one for one in made if one is not None)
-    found = blocked_pushes_with_origin(surprise)
+    situation, there, thing = next(one for one in made if one is not None)
+    found = blocked_pushes_with_origin(situation)
     near = []
     for one in found:
-        outcome, origin = one.what_if.outcome, one.what_if.frame.origin
+        outcome, origin = one.outcome, one.frame.origin
         assert outcome is not None and outcome.how == "blocked"
-        assert one.what_if.residual == 0 and 0 < one.chance <= 1
-        assert len(one.what_if.hypotheses) <= len(COARSE_ORIGINS) and origin in COARSE_ORIGINS
-        assert math.isclose(one.against, OFF_CENTRE_COST - math.log(len(one.what_if.hypotheses) / len(COARSE_ORIGINS)))
-        if math.dist(one.what_if.place, there) < 1 and outcome.polygon.hausdorff_distance(thing) < 1:
-            near += [hypothesis.box[:2] for hypothesis in one.what_if.hypotheses]
+        assert one.residual == 0 and one.chance is not None and 0 < one.chance <= 1
+        assert len(one.hypotheses) <= len(COARSE_ORIGINS) and origin in COARSE_ORIGINS
+        assert math.isclose(one.prior_cost, OFF_CENTRE_COST - math.log(len(one.hypotheses) / len(COARSE_ORIGINS)))
+        if math.dist(one.place, there) < 1 and outcome.polygon.hausdorff_distance(thing) < 1:
+            near += [hypothesis.box[:2] for hypothesis in one.hypotheses]
     assert beside in near, (seed, beside, square_of(there))
 
 
 def test_turned_objects_and_empty_hands_are_not_asked() -> None:
     rng = np.random.default_rng(1)
-    surprise, *_ = next(one for one in (blocked_push_of_utak(rng, CENTRE) for _ in range(2000)) if one is not None)
-    assert blocked_pushes_with_origin(surprise)
+    situation, *_ = next(one for one in (blocked_push_of_utak(rng, CENTRE) for _ in range(2000)) if one is not None)
+    assert propose(situation)
     for command in (Turn(30.0), Move(1.0, 0.0)):
-        held = surprise.in_hand if isinstance(command, Turn) else None
-        other = replace(surprise, command=command, in_hand=held)
-        assert blocked_pushes_with_origin(other) == []
+        held = situation.state.in_hand if isinstance(command, Turn) else None
+        other = replace(situation.supposing(in_hand=held), command=command)
+        assert propose(other) == []

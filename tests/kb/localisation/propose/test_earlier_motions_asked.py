@@ -1,24 +1,24 @@
 """Proposals of earlier motions: which of them are re-estimated when an observation is explained."""
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 import pytest
+import shapely
 
+from utak.kb.body import Move
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
-from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
 from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from utak.kb.localisation.propose.earlier_motion import ReestimatedMotion
-from utak.kb.localisation.score import SearchBudget, propose_earlier_motions
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.known.situation import ObservedSituation
+from utak.kb.localisation.known.state import TrackerState
+from utak.kb.localisation.propose.earlier_motion import propose
+from utak.kb.objects.held_object import HeldObject
 from utak.kb.perception.frame import CENTRE, Frame
 
 HELD = CENTRED_HYPOTHESES[0]
 STUCK = Explanation("stuck", CENTRE, Frame(), 0, 0.5)
-NO_SURPRISE = cast(Surprise, None)
 
 
 @pytest.mark.parametrize(
@@ -40,19 +40,17 @@ def test_only_doubtful_motions_are_reestimated_where_something_simple_explains_a
         MotionHypothesis(1, (1.0, 0.0), (HELD,), alternative_ends=doubts),
         MotionHypothesis(2, (1.0, 0.0), (HELD,)),
     )
-    told = ReestimatedMotion(
-        ReestimatedWalk(HELD, WalkCorrection(1, (-0.25, 0.5)), True, 0),
-        WhatIf(Frame(), (HELD,), CENTRE, None, 0, False),
-    )
+    told = Explanation("misled", CENTRE, Frame(), 0, 0.6, None, (HELD,), WalkCorrection(1, (-0.25, 0.5)), True)
     calls: list[list[int]] = []
 
-    def reestimate(_: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+    def reestimate(_: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
         calls.append([motion.number for motion in motions])
-        return [told] * bool(motions)
+        return [told._replace(chance=likely)] * bool(motions)
 
-    state, budget = TrackerState(observations=observations, motions=moved), SearchBudget(0)
-    found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, reestimate)
+    brick = HeldObject("o1", shapely.box(0, 0, 1, 1), shapely.box(0, 0, 1, 1))
+    state = TrackerState(observations=observations, motions=moved, held_objects={"o1": brick})
+    found = propose(ObservedSituation(state, Move(1.0, 0.0), observations[0].ranges, (simple,)), reestimate)
     assert calls == ([] if asked is None else [asked])
     assert len(found) == bool(asked)
     for one in found:
-        assert (one.how, one.chance, one.reestimated) == ("misled", likely, told.walk)
+        assert (one.how, one.chance, one.correction) == ("misled", likely, told.correction)
