@@ -166,9 +166,9 @@ def consistent_explanations(situation: ObservedSituation, explanations: Iterable
         if _settle_contact(after, one) and not count_clashes(
             state.frame, after, held_objects, one.place, situation.ranges
         ):
-            found.append((MapDescription(after, drawn), one))
-    chances = (max(one.chance or 0.0, MIN_END_CHANCE) for _, one in found)
-    costs = relative_costs([(description, -math.log(p)) for (description, _), p in zip(found, chances, strict=True)])
+            against = -math.log(max(one.chance or 0.0, MIN_END_CHANCE))
+            found.append((MapDescription(after, drawn, against), one))
+    costs = relative_costs([description for description, _ in found])
     return [one._replace(prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
 
 

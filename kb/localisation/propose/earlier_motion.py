@@ -14,7 +14,6 @@ from utak.kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obst
 from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, likeliest_first
 from utak.kb.localisation.hypotheses.frames import (
-    Observation,
     Position,
     any_origin,
     consistent_hypotheses,
@@ -28,7 +27,7 @@ from utak.kb.localisation.hypotheses.reestimation import (
     reestimate_two_walks,
     remap_if_consistent,
 )
-from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, object_at, remap
+from utak.kb.localisation.hypotheses.remap import object_at, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
     MotionHypothesis,
@@ -41,7 +40,6 @@ from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
-from utak.kb.perception.frame import Frame
 
 MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with the origin: bounds the time; tuned
 MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bounds the time; tuned
@@ -126,19 +124,15 @@ class CarriedMotion:
     def __init__(self, motion: MotionHypothesis, situation: ObservedSituation) -> None:
         """Find the ends of a motion with an object in hand."""
         assert motion.in_hand is not None
-        frame, observations, held_objects = (
-            situation.state.frame,
-            situation.state.observations[: motion.number],
-            situation.state.held_objects,
-        )
+        state = situation.state
+        frame, observations = state.frame, state.observations[: motion.number]
         pose = next(pose for pose in observations[-1].moved if pose.name == motion.in_hand)
         self._place = frame.place_from_utak(*observations[-1].place)
-        self._polygon = object_at(held_objects[motion.in_hand], pose, frame).polygon
+        self._polygon = object_at(state.held_objects[motion.in_hand], pose, frame).polygon
         self._motion = Translate(*frame.to_map(*motion.shift))
-        before = remap(
-            frame, frame, observations, held_objects.values(), situation.prefixes.first(motion.number)
-        ).occupancy
-        contacts = self._obstructions(before).contacts(self._place, self._polygon, self._motion)
+        first = situation.prefixes.first(motion.number)
+        before = remap(frame, frame, observations, state.held_objects.values(), first)
+        contacts = self._obstructions(before.occupancy).contacts(self._place, self._polygon, self._motion)
         likely = (contact.fraction for contact in sorted(contacts, key=lambda contact: -contact.chance))
         fractions = dict.fromkeys((*likely, 1.0))
         halts = [(part, view) for part in fractions for view in observation_places(self._place_after(part))]
@@ -190,55 +184,45 @@ def _has_known_pose(motion: MotionHypothesis, situation: ObservedSituation) -> b
 
 def _other_ends(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
-    observations, frame = situation.state.observations, situation.state.frame
-    believed, first = observations[motion.number].place, situation.prefixes.first(motion.number)
-    if first.contradicted:  # whatever came of the motion
+    state, believed = situation.state, situation.state.observations[motion.number].place
+    if situation.prefixes.first(motion.number).contradicted:  # whatever came of the motion
         return
-    way = WalkInFrame(motion, frame, observations) if motion.in_hand is None else CarriedMotion(motion, situation)
-    judged: dict[Position, RemappedMap | None] = {}  # by the shift
-    for end in way.ends:
-        shift = end.place[0] - believed[0], end.place[1] - believed[1]
-        if math.hypot(*shift) < LINE_DISTANCE:  # as believed
-            continue
-        corrected, correction = _corrected(situation, motion, end)
-        if shift not in judged:
-            judged[shift] = _consistent_map(corrected, first)
-        under = judged[shift]
-        if under is None:
-            continue
-        ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.state.observations, motion, frame))
+    alone = motion.in_hand is None
+    way = WalkInFrame(motion, state.frame, state.observations) if alone else CarriedMotion(motion, situation)
+    others = (end for end in way.ends if math.dist(end.place, believed) >= LINE_DISTANCE)
+    for end, supposed, correction in _consistent(situation, motion, others):
+        ahead = way.state_ahead(end, supposed.state.occupancy, _moved_since(supposed.state, motion))
         if ahead == FREE:
             continue
-        supposed = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
-        newest = supposed.evaluate_frame(frame, situation.state.hypotheses, only_whether=True)
+        newest = supposed.evaluate_frame(state.frame, state.hypotheses, only_whether=True)
         if not newest.residual:
             yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
-def _consistent_map(corrected: ObservedSituation, begun: MapReplay) -> RemappedMap | None:
-    """Return the map of all corrected observations, in the believed frame; None where one contradicts the others."""
-    held_objects = corrected.state.held_objects.values()
-    under = remap_if_consistent(
-        corrected.state.frame, corrected.state.observations, held_objects, corrected.unsettled_discs, begun=begun
-    )
-    return None if under is None or under.residual else under
-
-
 def _slips(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield ends whole squares beside the commanded end of one motion, with which no observation is contradicted."""
-    frame, first = situation.state.frame, situation.prefixes.first(motion.number)
-    if first.contradicted:  # whatever came of the motion
+    frame = situation.state.frame
+    if situation.prefixes.first(motion.number).contradicted:  # whatever came of the motion
         return
     end = add(situation.state.observations[motion.number - 1].place, motion.shift)
-    for place in slipped_ends(frame.place_from_utak(*end)):
-        corrected, correction = _corrected(situation, motion, WalkEnd(frame.place_to_utak(*place), 1))
-        under = _consistent_map(corrected, first)
-        if under is None:
-            continue
-        supposed = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
+    there = (WalkEnd(frame.place_to_utak(*place), 1) for place in slipped_ends(frame.place_from_utak(*end)))
+    for _, supposed, correction in _consistent(situation, motion, there):
         newest = next((one for one in _newest_after_slip(supposed) if not one.residual), None)
         if newest is not None:
             yield _earlier("slipped", newest, correction, contact_known=False)
+
+
+def _consistent(
+    situation: ObservedSituation, motion: MotionHypothesis, ends: Iterable[WalkEnd]
+) -> Iterator[tuple[WalkEnd, ObservedSituation, WalkCorrection]]:
+    """Yield the ends of an earlier motion with which no earlier observation is contradicted, and the situation then."""
+    frame, first = situation.state.frame, situation.prefixes.first(motion.number)
+    for end in ends:
+        corrected, correction = _corrected(situation, motion, end)
+        there, held_objects = corrected.state.observations, corrected.state.held_objects.values()
+        under = remap_if_consistent(frame, there, held_objects, corrected.unsettled_discs, begun=first)
+        if under is not None and not under.residual:
+            yield end, corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects), correction
 
 
 def _newest_after_slip(supposed: ObservedSituation) -> Iterator[Explanation]:
@@ -277,8 +261,7 @@ def _ends_with_origin(situation: ObservedSituation, motion: MotionHypothesis) ->
                 continue
             under = corrected.remapped(frame)
             there = corrected.supposing(frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)
-            things = _moved_since(under, observations, motion, frame)
-            ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, things)
+            ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, _moved_since(there.state, motion))
             if ahead != FREE:
                 yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
@@ -312,14 +295,12 @@ def _object_shift(held: HeldObject, shift: Position, state: TrackerState) -> Pos
     return frame.to_utak(float(east - west), float(north - south))
 
 
-def _moved_since(
-    under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
-) -> frozenset[Square]:
+def _moved_since(state: TrackerState, motion: MotionHypothesis) -> frozenset[Square]:
     """Return the squares that objects covered when a motion was made, without the object in hand."""
-    before = {pose.name: pose for pose in observations[motion.number - 1].moved}
+    before = {pose.name: pose for pose in state.observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
-    for held in under.held_objects.values():
+    for held in state.held_objects.values():
         if held.name != motion.in_hand:
-            lying = object_at(held, before[held.name], frame).polygon if held.name in before else held.first
+            lying = object_at(held, before[held.name], state.frame).polygon if held.name in before else held.first
             squares |= patch_of_polygon(lying).squares()
     return squares

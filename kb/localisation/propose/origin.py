@@ -60,8 +60,8 @@ def blocked_walks_with_origin(
                 squares = observation_squares(walk.frame, _corrected(walk, observations))
                 alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
     drawn, against = DrawnScenes(), [origin_cost(believed, len(walks)) for walks in alike.values()]
-    maps = [_description(walks[0], observations, drawn) for walks in alike.values()]
-    costs = relative_costs([*zip(maps, against, strict=True)])
+    first = (walks[0] for walks in alike.values())
+    costs = relative_costs([_description(*one, observations, drawn) for one in zip(first, against, strict=True)])
     return [
         _likeliest(same)._replace(prior_cost=cost + odds, origin_weighed=True)
         for same, cost, odds in zip(alike.values(), costs, against, strict=True)
@@ -75,9 +75,11 @@ def _corrected(walk: Explanation, observations: Sequence[Observation]) -> list[O
     return [*before, newest._replace(place=walk.frame.place_to_utak(*walk.place))]
 
 
-def _description(walk: Explanation, observations: Sequence[Observation], drawn: DrawnScenes) -> MapDescription:
+def _description(
+    walk: Explanation, against: float, observations: Sequence[Observation], drawn: DrawnScenes
+) -> MapDescription:
     """Return the map by a re-estimated walk, as one to be completed; nothing is drawn yet."""
-    return MapDescription(remap(walk.frame, walk.frame, _corrected(walk, observations), ()).occupancy, drawn)
+    return MapDescription(remap(walk.frame, walk.frame, _corrected(walk, observations), ()).occupancy, drawn, against)
 
 
 def blocked_pushes_with_origin(situation: ObservedSituation) -> list[Explanation]:

@@ -144,7 +144,7 @@ def test_an_observation_at_a_wrong_place_raises_the_cost_of_the_map() -> None:
     for aside in (0, 1, 2):
         occupancy = looked(room, LOOKS[:2])
         occupancy.observe(Frame().samples(), seen, 5 + aside, 2, 2)
-        maps.append((MapDescription(occupancy), 0.0))
+        maps.append(MapDescription(occupancy))
     costs = relative_costs(maps)
     assert costs[0] == 0.0
     assert min(costs[1:]) > 2
