@@ -112,7 +112,8 @@ def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHyp
         other = hypothesis.frame
         under = maps.remapped(other)
         lying = [held.woken(error) for held in under.held_objects.values()]
-        if not count_clashes(other, under.occupancy, lying, other.place_from_utak(*own), ranges):
+        clashes = count_clashes(other, under.occupancy, lying, other.place_from_utak(*own), ranges)
+        if not under.residual and not clashes:
             agree.append(hypothesis)
     return tuple(agree) or within
 

@@ -303,10 +303,11 @@ class Tracker:
         elif chosen.frame == state.frame:
             self.state = state
             return
-        if chosen.correction is not None or len(held_objects) < len(state.held_objects):
+        as_before = chosen.correction is None and len(held_objects) == len(state.held_objects)
+        maps = RemapCache(state.frame, state.occupancy, state.observations, held_objects)
+        under = maps.remapped(chosen.frame) if as_before else None
+        if under is None or under.residual:
             under = remap(chosen.frame, state.frame, state.observations, held_objects.values())
-        else:
-            under = RemapCache(state.frame, state.occupancy, state.observations, held_objects).remapped(chosen.frame)
         self.state = _remapped(replace(state, frame=chosen.frame), under)
 
     def _forget_changed(self, change: TableChange) -> None:

@@ -92,10 +92,14 @@ def _other_ends(
                 judged[key] = None
                 if _are_consistent(frame, squares, ranges):
                     *before, last = correction.observations(observations)
-                    judged[key] = remap(frame, frame, [*before, last._replace(place=place)], (), begun.first(number))
+                    all_there, first = [*before, last._replace(place=place)], begun.first(number)
+                    judged[key] = remap(frame, frame, all_there, (), first, only_whether=True)
             under = judged[key]
-            if under is not None and (ahead := walk.state_ahead(end, under.occupancy)) != FREE:
-                yield _misled(hypothesis, correction, place, ahead == OCCUPIED, under.residual)
+            if under is None or under.residual:
+                continue
+            ahead = walk.state_ahead(end, under.occupancy)
+            if ahead != FREE:
+                yield _misled(hypothesis, correction, place, ahead == OCCUPIED)
 
 
 def reestimate_two_walks(
@@ -118,15 +122,15 @@ def reestimate_two_walks(
             if under is None or under.residual or walk.state_ahead(end, under.occupancy) != OCCUPIED:
                 continue
             if halt in still or onward.state_ahead(halt, under.occupancy) == OCCUPIED:
-                yield _misled(hypothesis, correction, halt.place, True, 0)
+                yield _misled(hypothesis, correction, halt.place, True)
 
 
 def _misled(
-    hypothesis: FrameHypothesis, correction: WalkCorrection, newest: Position, contact_known: bool, residual: int
+    hypothesis: FrameHypothesis, correction: WalkCorrection, newest: Position, contact_known: bool
 ) -> Explanation:
     """Return the explanation by another end of a motion. newest : of the observations, Utak's own frame."""
     place, far = hypothesis.frame.place_from_utak(*newest), math.hypot(*correction.shift)
-    misled = Explanation("misled", place, hypothesis.frame, residual, far, None, (hypothesis,), correction)
+    misled = Explanation("misled", place, hypothesis.frame, 0, far, None, (hypothesis,), correction)
     return misled._replace(contact_known=contact_known, prior_cost=hypothesis.prior_cost)
 
 

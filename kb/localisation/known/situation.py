@@ -199,69 +199,53 @@ class ObservedSituation:
         """Return the replays of the first observations (mapped one after the other) in the believed frame; cached."""
         return ReplayPrefixes(self.state.frame, self.state.observations, self.state.held_objects)
 
-    def evaluate_frame(
+    def by_frame(
         self,
         frame: Frame,
         hypotheses: tuple[FrameHypothesis, ...],
         cut_short: bool = False,
         origin_error: float = 0.0,
-        only_whether: bool = False,
-    ) -> Explanation:
-        """Return the explanation by another frame, of kind turned, with the outcome of the motion that fits it best."""
-        if only_whether and (refuted := self.refuted(frame, hypotheses)) is not None:
-            return refuted
+    ) -> Explanation | None:
+        """Return the explanation by another frame, with the likeliest outcome; None where something contradicts it."""
+        if self.remapped(frame).residual:
+            return None
         if self.carried is None:  # it went as commanded
             place = frame.place_from_utak(*self.commanded_place)
-            held_objects = self.remapped(frame).held_objects.values()
-            residual = self._residual(frame, held_objects, place, origin_error, only_whether)
-            return Explanation("turned", place, frame, residual, 0.0, None, hypotheses)
-        tried = []
+            turned = Explanation("turned", place, frame, 0, 0.0, None, hypotheses)
+            return self._fitting(turned, self.remapped(frame).held_objects.values(), origin_error)
         for outcome in self._outcomes(frame, cut_short):
             slack = END_SPACING / 2 if cut_short and outcome.how != "predicted" else 0.0
-            judged = self.evaluate_outcome(frame, hypotheses, outcome, slack, origin_error, only_whether)
-            tried.append(judged)
-            if not judged.residual:
-                break
-        return min(tried, key=lambda one: one.residual)
+            found = self.by_outcome(frame, hypotheses, outcome, slack, origin_error)
+            if found is not None:
+                return found
+        return None
 
-    def refuted(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> Explanation | None:
-        """Return the explanation by a frame that earlier observations contradict; None when none does."""
-        residual = self.remapped(frame, only_whether=True).residual
-        place = frame.place_from_utak(*self.commanded_place)
-        return Explanation("turned", place, frame, residual, 0.0, None, hypotheses) if residual else None
-
-    def evaluate_outcome(
+    def by_outcome(
         self,
         frame: Frame,
         hypotheses: tuple[FrameHypothesis, ...],
         outcome: CarryOutcome,
         slack: float = 0.0,
         origin_error: float = 0.0,
-        only_whether: bool = False,
-    ) -> Explanation:
-        """Return the explanation by a frame together with an outcome of the motion of the object in hand."""
+    ) -> Explanation | None:
+        """Return the explanation by a frame and an outcome of the motion of the object in hand; None likewise."""
         assert self.carried is not None
+        if self.remapped(frame).residual:
+            return None
         name, held_objects = self.carried[0].name, self.remapped(frame).held_objects
         slack, commanded = max(held_objects[name].slack, slack), outcome.as_commanded
         moved = held_objects[name].moved(outcome.polygon, slack, outcome.degrees, commanded)
-        after = {**held_objects, name: moved}.values()
-        residual = self._residual(frame, after, outcome.place, origin_error, only_whether)
-        return Explanation("turned", outcome.place, frame, residual, outcome.distance, outcome, hypotheses)
+        turned = Explanation("turned", outcome.place, frame, 0, outcome.distance, outcome, hypotheses)
+        return self._fitting(turned, {**held_objects, name: moved}.values(), origin_error)
 
-    def _residual(
-        self,
-        frame: Frame,
-        held_objects: Iterable[HeldObject],
-        place: Position,
-        origin_error: float,
-        only_whether: bool = False,
-    ) -> int:
-        """Return how many fields contradict a frame, over all observations."""
-        under = self.remapped(frame)
-        if only_whether and under.residual:
-            return under.residual
+    def _fitting(
+        self, turned: Explanation, held_objects: Iterable[HeldObject], origin_error: float
+    ) -> Explanation | None:
+        """Return an explanation by another frame; None where it contradicts the observation."""
         lying = [held.woken(origin_error) if origin_error else held for held in held_objects]
-        return under.residual + count_clashes(frame, under.occupancy, lying, place, self.ranges, only_whether)
+        occupancy = self.remapped(turned.frame).occupancy
+        clashes = count_clashes(turned.frame, occupancy, lying, turned.place, self.ranges, only_whether=True)
+        return None if clashes else turned
 
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
         """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame."""
@@ -270,9 +254,9 @@ class ObservedSituation:
         place = frame.place_from_utak(*self.state.frame.place_to_utak(*self.state.place))
         return place, self.remapped(frame).held_objects[held.name].polygon, command_motion(command, frame, place)
 
-    def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
+    def remapped(self, frame: Frame) -> RemappedMap:
         """Return the map of all earlier observations in a frame, with the held objects; kept for each frame."""
-        return self._maps.remapped(frame, only_whether)
+        return self._maps.remapped(frame)
 
     @cached_property
     def _maps(self) -> RemapCache:

@@ -35,7 +35,7 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     observation_places,
     slipped_ends,
 )
-from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, is_simple, with_chance
+from utak.kb.localisation.known.situation import ObservedSituation, is_simple, residual_at, with_chance
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
@@ -70,10 +70,9 @@ def propose(
 
 
 def propose_stopped(situation: ObservedSituation) -> list[Explanation]:
-    """Return other ends of walks that are believed to have been stopped, if one of them leaves nothing unexplained."""
+    """Return other ends of walks that are believed to have been stopped."""
     stopped = [motion for motion in situation.state.earlier if motion.blocked]
-    ends = (one for motion in stopped for one in situation.other_ends(motion))
-    return _blocked_elsewhere(situation, stopped) if any(not one.residual for one in ends) else []
+    return _blocked_elsewhere(situation, stopped)
 
 
 def propose_slips(situation: ObservedSituation) -> list[Explanation]:
@@ -194,8 +193,8 @@ def _other_ends(situation: ObservedSituation, motion: MotionHypothesis) -> Itera
         ahead = way.state_ahead(end, supposed.state.occupancy, _moved_since(supposed.state, motion))
         if ahead == FREE:
             continue
-        newest = supposed.evaluate_frame(state.frame, state.hypotheses, only_whether=True)
-        if not newest.residual:
+        newest = supposed.by_frame(state.frame, state.hypotheses)
+        if newest is not None:
             yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
@@ -207,7 +206,7 @@ def _slips(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[E
     end = add(situation.state.observations[motion.number - 1].place, motion.shift)
     there = (WalkEnd(frame.place_to_utak(*place), 1) for place in slipped_ends(frame.place_from_utak(*end)))
     for _, supposed, correction in _consistent(situation, motion, there):
-        newest = next((one for one in _newest_after_slip(supposed) if not one.residual), None)
+        newest = _newest_after_slip(supposed)
         if newest is not None:
             yield _earlier("slipped", newest, correction, contact_known=False)
 
@@ -225,16 +224,15 @@ def _consistent(
             yield end, corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects), correction
 
 
-def _newest_after_slip(supposed: ObservedSituation) -> Iterator[Explanation]:
-    """Yield where the newest observation may have been made after a slip, the likeliest place first."""
+def _newest_after_slip(supposed: ObservedSituation) -> Explanation | None:
+    """Return where the newest observation was made after a slip, the likeliest place; None where none fits."""
     state, frame = supposed.state, supposed.state.frame
     if supposed.carried is not None:
-        yield supposed.evaluate_frame(frame, state.hypotheses, only_whether=True)
-        return
+        return supposed.by_frame(frame, state.hypotheses)
     # Where in its square the robot was after the slip is not known.
-    for place in places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5)):
-        clashes = count_clashes(frame, state.occupancy, state.held_objects.values(), place, supposed.ranges)
-        yield Explanation("slipped", place, frame, clashes, 0.0, None, state.hypotheses)
+    near = places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5))
+    place = next((place for place in near if not residual_at(supposed, place)), None)
+    return None if place is None else Explanation("slipped", place, frame, 0, 0.0, None, state.hypotheses)
 
 
 def _earlier(how: str, newest: Explanation, correction: WalkCorrection, contact_known: bool) -> Explanation:
@@ -256,8 +254,8 @@ def _ends_with_origin(situation: ObservedSituation, motion: MotionHypothesis) ->
         under = remap(believed, believed, observations, held_objects, first)
         corrected = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
         for frame in frames_to_try(left, believed)[:MAX_FRAMES_PER_END]:
-            newest = corrected.evaluate_frame(frame, left, only_whether=True)
-            if newest.residual:
+            newest = corrected.by_frame(frame, left)
+            if newest is None:
                 continue
             under = corrected.remapped(frame)
             there = corrected.supposing(frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)

@@ -23,12 +23,11 @@ MAX_SEARCHED_SPAN = 8  # degrees between the hypotheses left up to which all of 
 MAX_EVALUATED_FRAMES = 12  # frames in which everything is remapped, at most: bounds the time; tuned
 MIN_EVALUATED_FRAMES = 4  # the same, at least, however many observations there are; tuned
 MAX_REMAPPED_OBSERVATIONS = 200  # observations replayed in all for that: bounds the time; tuned
-MAX_BLOCKED_FRAMES = 3  # of those, the best ones in which the motion may have been blocked by something unknown; tuned
 MIN_ORIGIN_AREA = 0.02  # squares^2 of origins left below which a blocked motion is likelier; tuned
 
 
 def propose(situation: ObservedSituation) -> list[Explanation]:
-    """Return the explanation by another frame in a list, if it explains more than the whole motion does."""
+    """Return the explanation by another frame in a list; [] where something contradicts each that is tried."""
     state, whole = situation.state, situation.found[0]
     if not state.held_objects:
         if whole.unexplained:
@@ -36,7 +35,7 @@ def propose(situation: ObservedSituation) -> list[Explanation]:
         return _best_prior(situation)
     simple = any(not one.unexplained for one in situation.found[1:] if one.how != "slipped" or state.slipped)
     found = _best_frame(situation, simple)
-    if found is None or found.residual >= whole.unexplained:
+    if found is None:
         return []
     pushed = found.outcome is not None and found.outcome.stopped and isinstance(situation.motion, Translate)
     if simple and pushed and found.frame == state.frame:  # finer proposals of where it was blocked exist already
@@ -58,12 +57,19 @@ def _best_prior(situation: ObservedSituation) -> list[Explanation]:
 
 
 def _best_frame(situation: ObservedSituation, simple: bool) -> Explanation | None:
-    """Return the explanation by the frame that explains an observation best; None when no frame is left."""
+    """Return the explanation by the likeliest frame that nothing contradicts; None when there is none."""
     if situation.any_turned:
         found = _other_orientation(situation) or origin_from_turn(situation, simple)
         if found is not None:
             return found
-    return _least_residual(situation)
+    affordable = MAX_REMAPPED_OBSERVATIONS // (len(situation.state.observations) + 1)
+    few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
+    for hypotheses, searched in _batches(situation):
+        crowded = searched and sum(hypothesis.area for hypothesis in hypotheses) < MIN_ORIGIN_AREA
+        found = (_blocked_motion(situation, few) if crowded else None) or _first_fitting(situation, hypotheses, few)
+        if found is not None:
+            return found
+    return _blocked_motion(situation, few)
 
 
 def _other_orientation(situation: ObservedSituation) -> Explanation | None:
@@ -71,34 +77,15 @@ def _other_orientation(situation: ObservedSituation) -> Explanation | None:
     angle = situation.state.frame.angle
     others = [other for other in situation.state.hypotheses if other.is_centred and other.angle != angle]
     left = consistent_hypotheses(situation.judging_observations, others, situation.unsettled_discs)
-    frames = frames_to_try(left, situation.state.frame)[:MAX_EVALUATED_FRAMES]
-    tried = (situation.evaluate_frame(frame, left, only_whether=True) for frame in frames)
-    return next((one for one in tried if not one.residual), None)
+    return _first_fitting(situation, left, MAX_EVALUATED_FRAMES)
 
 
-def _least_residual(situation: ObservedSituation) -> Explanation | None:
-    """Return the evaluation of the least residual; None when no frame is left."""
-    found: list[Explanation] = []
-    affordable = MAX_REMAPPED_OBSERVATIONS // (len(situation.state.observations) + 1)
-    few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
-    for hypotheses, searched in _batches(situation):
-        if searched and sum(hypothesis.area for hypothesis in hypotheses) < MIN_ORIGIN_AREA:
-            short = _blocked_motion(situation, few)
-            if short is not None:
-                return short
-        for frame in frames_to_try(hypotheses, situation.state.frame)[:few]:
-            found.append(situation.evaluate_frame(frame, hypotheses))
-            if not found[-1].residual:
-                return found[-1]
-    if found or situation.carried is None:
-        found.sort(key=lambda one: one.residual)
-        others = [one for one in found if one.frame != situation.state.frame][:MAX_BLOCKED_FRAMES]
-        found += [situation.evaluate_frame(one.frame, one.hypotheses, cut_short=True) for one in others]
-    else:  # in none of them the motion went on to its end
-        before = situation.hypotheses_before
-        for frame in frames_to_try(before, situation.state.frame)[:few]:
-            found += [situation.evaluate_frame(frame, before, cut_short=cut_short) for cut_short in (False, True)]
-    return min(found, key=lambda one: one.residual, default=None)
+def _first_fitting(
+    situation: ObservedSituation, hypotheses: tuple[FrameHypothesis, ...], few: int
+) -> Explanation | None:
+    """Return the explanation by the likeliest frame that nothing contradicts; None if there is none."""
+    frames = frames_to_try(hypotheses, situation.state.frame)[:few]
+    return next(filter(None, (situation.by_frame(frame, hypotheses) for frame in frames)), None)
 
 
 def _batches(situation: ObservedSituation) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
@@ -132,8 +119,8 @@ def _blocked_motion(situation: ObservedSituation, few: int) -> Explanation | Non
     before = situation.hypotheses_before
     frames = frames_to_try(before, situation.state.frame)[:few]
     for cut_short in (False, True):
-        tried = [situation.evaluate_frame(frame, before, cut_short=cut_short, only_whether=True) for frame in frames]
-        fitting = sorted((one for one in tried if not one.residual), key=lambda one: one.frame.angle)
+        tried = (situation.by_frame(frame, before, cut_short) for frame in frames)
+        fitting = sorted((one for one in tried if one is not None), key=lambda one: one.frame.angle)
         if fitting:
             return fitting[(len(fitting) - 1) // 2]
     return None

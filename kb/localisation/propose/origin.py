@@ -56,9 +56,8 @@ def blocked_walks_with_origin(
     prefixes = cache(lambda frame: ReplayPrefixes(frame, observations, {}, shared))
     for motion in motions[-MAX_WALKS_WITH_ORIGIN:]:
         for walk in reestimate_walk(motion._replace(hypotheses=origins), believed, observations, prefixes):
-            if not walk.residual:
-                squares = observation_squares(walk.frame, _corrected(walk, observations))
-                alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
+            squares = observation_squares(walk.frame, _corrected(walk, observations))
+            alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
     drawn, against = DrawnScenes(), [origin_cost(believed, len(walks)) for walks in alike.values()]
     first = (walks[0] for walks in alike.values())
     costs = relative_costs([_description(*one, observations, drawn) for one in zip(first, against, strict=True)])
@@ -96,7 +95,7 @@ def blocked_pushes_with_origin(situation: ObservedSituation) -> list[Explanation
 
 def _blocked_pushes(situation: ObservedSituation, frame: Frame) -> Iterator[Explanation]:
     """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability."""
-    under = situation.remapped(frame, only_whether=True)
+    under = situation.remapped(frame)
     if under.residual:
         return
     place, polygon, motion = situation.motion_in(frame)
@@ -104,9 +103,8 @@ def _blocked_pushes(situation: ObservedSituation, frame: Frame) -> Iterator[Expl
     for contact in likeliest_ends(contacts):
         end = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
         for view in observation_places(end.place):
-            there = end._replace(place=view)
-            one = situation.evaluate_outcome(frame, (exact_hypothesis(frame),), there, only_whether=True)
-            if not one.residual:
+            one = situation.by_outcome(frame, (exact_hypothesis(frame),), end._replace(place=view))
+            if one is not None:
                 yield one._replace(chance=contact.chance, contact_squares=contact.squares)
 
 

@@ -69,8 +69,8 @@ def origin_from_turn(situation: ObservedSituation, simple: bool) -> Explanation 
     """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none."""
     points = _origins_left(situation)
     error = math.hypot(*grid_cell_size(points)) / 2
-    tried = (situation.evaluate_frame(point.frame, (point,), origin_error=error, only_whether=True) for point in points)
-    fitting = [one for one in tried if not one.residual]
+    tried = (situation.by_frame(point.frame, (point,), origin_error=error) for point in points)
+    fitting = [one for one in tried if one is not None]
     if not fitting and not (simple and len(situation.state.hypotheses) == 1):
         fitting = _blocked_turns(situation, _bounds(points))
     return _middle(fitting) if fitting else None
@@ -96,21 +96,20 @@ def _blocked_turns(situation: ObservedSituation, bounds: OriginBox) -> list[Expl
         if number:
             cells = [part for cell in cells for part in cell.cut(*SUBDIVISION)]
         tried = [(cell, _evaluate_cell(situation, cell, length)) for cell in cells]
-        fitting = [(cell, one) for cell, one in tried if not one.residual]
+        fitting = [(cell, one) for cell, one in tried if one is not None]
         cells = [cell for cell, _ in fitting]
     return _at_contacts(situation, fitting, length)
 
 
-def _evaluate_cell(situation: ObservedSituation, cell: TurnOriginCell, length: float) -> Explanation:
-    """Return what contradicts an origin and an end of the turn in a cell."""
+def _evaluate_cell(situation: ObservedSituation, cell: TurnOriginCell, length: float) -> Explanation | None:
+    """Return the explanation by an origin and an end of the turn in a cell; None where something contradicts it."""
     frame = Frame(situation.state.frame.angle, cell.origin)
-    left = (exact_hypothesis(frame),)
-    refuted = situation.refuted(frame, left)
-    if refuted is not None:
-        return refuted
+    if situation.remapped(frame).residual:
+        return None
     place, polygon, motion = situation.motion_in(frame)
     outcome = partial_outcome(place, polygon, motion, sum(cell.turn) / 2)
-    return situation.evaluate_outcome(frame, left, outcome, _cell_slack(cell, length), cell.radius, only_whether=True)
+    left, slack = (exact_hypothesis(frame),), _cell_slack(cell, length)
+    return situation.by_outcome(frame, left, outcome, slack, cell.radius)
 
 
 def _at_contacts(
@@ -124,10 +123,9 @@ def _at_contacts(
         contact = likeliest_contact_near(contacts(one.frame), place, polygon, motion, sum(cell.turn) / 2)
         if contact is not None:
             there = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
-            judged = situation.evaluate_outcome(
-                one.frame, one.hypotheses, there, _cell_slack(cell, length), cell.radius, only_whether=True
-            )
-            if not judged.residual:
+            slack = _cell_slack(cell, length)
+            judged = situation.by_outcome(one.frame, one.hypotheses, there, slack, cell.radius)
+            if judged is not None:
                 stopped.append((contact.chance, judged))
     best = max((chance for chance, _ in stopped), default=0.0)
     likely = [one for chance, one in stopped if chance >= best / MAX_CHANCE_RATIO]
