@@ -49,16 +49,9 @@ def _unexplained_carry(situation: ObservedSituation) -> bool:
     return _unexplained(situation) and situation.carried is not None
 
 
-def _unexplained_walk(situation: ObservedSituation) -> bool:
-    """Return whether the map contradicts a walk before any object was moved."""
-    moved, whole = situation.state.held_objects, situation.found[0]
-    return not moved and _unexplained(situation) and (whole.residual > 0 or situation.stands)
-
-
 def _unframed(situation: ObservedSituation) -> bool:
     """Return whether frames are to be weighed: always before any object was moved, later where something is amiss."""
-    asked = not situation.state.held_objects or _unexplained(situation)
-    return asked and not any(one.remaps for one in situation.found)
+    return not situation.state.held_objects or _unexplained(situation)
 
 
 def _not_simple(situation: ObservedSituation) -> bool:
@@ -90,7 +83,6 @@ TABLE: tuple[tuple[ProposalRow, ...], ...] = (
         (_unexplained_carry, smaller_object.propose),
         (_unexplained_carry, larger_object.propose),
         (_unexplained_carry, parted_object.propose),
-        (_unexplained_walk, earlier_motion.propose_stopped),
         (_unframed, frame.propose),
         (_unexplained, earlier_motion.propose),
         (_not_simple, origin.propose),

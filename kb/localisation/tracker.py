@@ -197,8 +197,11 @@ class Tracker:
         """Note in `state` how a walk ended by the chosen explanation, and return where the look was made."""
         ahead = situation.ahead
         chosen = self._narrow(situation, chosen)
-        self._count_confirmations(chosen)
-        self._note_motion(chosen)
+        number = self.state.confirmations
+        number = number + 1 if chosen.how == "predicted" else number * (chosen.chance is not None)
+        self.state = replace(self.state, confirmations=number)
+        if chosen.how == "slipped":
+            self.state = replace(self.state, slipped=True, motions=())
         if chosen.how == "blocked" or chosen.place == self.state.place != ahead:
             entered = entered_square(chosen.place, ahead)
             squares = chosen.contact_squares or frozenset([entered] if entered else [])
@@ -240,23 +243,6 @@ class Tracker:
         samples, occupancy = self.state.frame.samples(), self.state.occupancy
         left, counts = subtract_held_objects(samples, ranges, x, y, self.state.held_objects.values())
         return Accommodation(explanation, account_for_fields(occupancy, left, ranges, counts, (x, y)))
-
-    def _count_confirmations(self, explanation: Explanation) -> None:
-        """Count a predicted observation as a confirmation in `state`."""
-        number = self.state.confirmations
-        number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
-        self.state = replace(self.state, confirmations=number)
-
-    def _note_motion(self, explanation: Explanation) -> None:
-        """Note in `state` that motions slip, or which remembered motion was blocked, if an explanation says so."""
-        state = self.state
-        if explanation.how == "slipped":
-            self.state = replace(state, slipped=True, motions=())
-        elif explanation.how in ("blocked", "misled"):
-            correction = explanation.correction
-            since = len(state.observations) if correction is None else correction.since
-            motions = tuple(m._replace(blocked=True) if m.number == since else m for m in state.motions)
-            self.state = replace(state, motions=motions)
 
     def _move_object(self, situation: ObservedSituation, chosen: Explanation) -> None:
         """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""

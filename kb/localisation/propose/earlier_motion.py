@@ -69,12 +69,6 @@ def propose(
     return found if found or simple else reestimate_with_origin(situation, state.earlier)
 
 
-def propose_stopped(situation: ObservedSituation) -> list[Explanation]:
-    """Return other ends of walks that are believed to have been stopped."""
-    stopped = [motion for motion in situation.state.earlier if motion.blocked]
-    return _blocked_elsewhere(situation, stopped)
-
-
 def propose_slips(situation: ObservedSituation) -> list[Explanation]:
     """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
     motions = reversed(situation.state.earlier)
@@ -84,15 +78,11 @@ def propose_slips(situation: ObservedSituation) -> list[Explanation]:
 
 def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
     """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
-    state = situation.state
-    turned = [one for one in situation.found if one.remaps]
-    if all(one.unexplained for one in turned):
-        simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
-        return _blocked_elsewhere(situation, state.earlier if simple else state.reestimable)
-    met = [one for one in _blocked_elsewhere(situation, state.reestimable) if one.contact_known or one.chance]
-    if state.off_middle or not all(one.is_odd for one in turned):
-        met = [one for one in met if one.frame == state.frame]
-    return met or _both_blocked(situation)
+    state, turned = situation.state, any(one.remaps and not one.unexplained for one in situation.found)
+    simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
+    found = _blocked_elsewhere(situation, state.earlier if simple and not turned else state.reestimable)
+    met = any(one.contact_known or one.chance for one in found)
+    return found if met or not turned else [*found, *_both_blocked(situation)]
 
 
 def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHypothesis]) -> list[Explanation]:
