@@ -18,7 +18,7 @@ from utak.kb.localisation.hypotheses.contacts import Obstructions
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, grid_cell_size
 from utak.kb.localisation.hypotheses.remap import RemapCache
-from utak.kb.localisation.known.situation import count_clashes
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square, outline_tolerance
 
@@ -77,25 +77,18 @@ def _touching_places(polygon: Any, motion: Translate, known: Obstacles) -> Itera
             yield far, onward.part(fraction).carry(back)
 
 
-def moved_object(
-    state: TrackerState,
-    held: HeldObject,
-    chosen: Explanation,
-    motion: Motion,
-    ranges: FieldRanges,
-    suspected: frozenset[Square],
-) -> HeldObject:
+def moved_object(situation: ObservedSituation, chosen: Explanation, suspected: frozenset[Square]) -> HeldObject:
     """Return the object in hand after the chosen outcome of a motion: its outline, map frame, and what else changed."""
-    others, place = state.others(held), chosen.place
-    held = replace(held, inexact=held.inexact or state.slipped)
-    carried = object_after(held, chosen.outcome, chosen.unexplained, bool(suspected))
+    state, held, place = situation.state, situation.held, chosen.place
+    inexact = replace(held, inexact=held.inexact or state.slipped)
+    carried = object_after(inexact, chosen.outcome, chosen.unexplained, bool(suspected))
     if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
-        known = Obstructions(state.occupancy, place, carried.polygon, motion).known
+        known = Obstructions(state.occupancy, place, carried.polygon, situation.motion).known
 
         def clashes(lying: HeldObject) -> int:
-            return count_clashes(state.frame, state.occupancy, [*others, lying], place, ranges)
+            return count_clashes(state.frame, state.occupancy, [*state.others(held), lying], place, situation.ranges)
 
-        carried = lean_on_obstacle(carried, motion, known, clashes)
+        carried = lean_on_obstacle(carried, situation.motion, known, clashes)
     return carried
 
 

@@ -36,17 +36,13 @@ def explain(situation: ObservedSituation) -> tuple[Explanation, tuple[Explanatio
     return situation.found[0], ends
 
 
-def _always(_: ObservedSituation) -> bool:
-    return True
-
-
 def _unexplained(situation: ObservedSituation) -> bool:
     """Return whether something contradicts that the motion went as commanded."""
     return situation.found[0].unexplained > 0
 
 
 def _unexplained_carry(situation: ObservedSituation) -> bool:
-    return _unexplained(situation) and situation.carried is not None
+    return _unexplained(situation) and situation.carries
 
 
 def _unframed(situation: ObservedSituation) -> bool:
@@ -78,7 +74,7 @@ def _elsewhere(situation: ObservedSituation) -> bool:
 
 TABLE: tuple[tuple[ProposalRow, ...], ...] = (
     (
-        (_always, blocked.propose),
+        (lambda _: True, blocked.propose),
         (_unexplained, blocked.propose_other_ends),
         (_unexplained_carry, smaller_object.propose),
         (_unexplained_carry, larger_object.propose),

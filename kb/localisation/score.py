@@ -25,12 +25,12 @@ def choose(situation: ObservedSituation) -> Explanation:
         **{f"met({n})": one.contact_known and one.frame == state.frame for n, one in enumerate(found)},
         "proven": state.in_hand is not None and state.held_objects[state.in_hand].proven,
     }
-    if situation.carried is not None:
-        held = situation.carried[0]
+    if situation.carries:
+        insets = situation.held.insets
         facts |= {
             "unchanged": np.array_equal(situation.ranges, state.observations[-1].ranges),
             "clear": sum(contact.chance for contact in situation.contacts) <= MAX_CLEAR_CHANCE,
-            "uneven": held.insets is not None and any(held.insets.believed),
+            "uneven": insets is not None and any(insets.believed),
         }
     return cheapest(found, [fact for fact, holds in facts.items() if holds])
 

@@ -33,7 +33,7 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     observation_places,
     snap_to_middle,
 )
-from utak.kb.localisation.known.situation import ObservedSituation, command_motion, count_clashes, residual_at
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, residual_at
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.localisation.proposals import explain
 from utak.kb.localisation.propose.lifted import MIN_KNOWN_LOOKS, look_at
@@ -168,7 +168,7 @@ class Tracker:
     def _prepare(self, situation: ObservedSituation) -> None:
         """Remember a straight motion in `state`, and how far a turn may lead what is in hand astray."""
         state, command = situation.state, situation.command
-        held = None if situation.carried is None else situation.carried[0]
+        held = situation.held if situation.carries else None
         if held is not None and isinstance(command, Turn) and (state.beside_line or state.place_doubt):
             held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
             self.update_object(held)
@@ -187,9 +187,9 @@ class Tracker:
             return self._unexplained(chosen, situation.ranges)
         self._learn(chosen, ends)
         self._apply(chosen)
-        if situation.carried is None:
+        if not situation.carries:
             chosen = self._end_walk(situation, chosen)
-        elif self.state.in_hand == situation.carried[0].name:
+        elif self.state.in_hand == situation.held.name:
             self._move_object(situation, chosen)
         return self._integrate(chosen, situation.ranges)
 
@@ -246,17 +246,16 @@ class Tracker:
 
     def _move_object(self, situation: ObservedSituation, chosen: Explanation) -> None:
         """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""
-        assert situation.carried is not None
-        name, command, ranges = situation.carried[0].name, situation.carried[1], situation.ranges
+        name, ranges = situation.held.name, situation.ranges
         if chosen.instead is not None:
             self._declare(chosen.instead.possible, FREE)
             self.update_object(chosen.instead)
         if chosen.left:
             self._declare(patch_of_squares(chosen.left), OCCUPIED)
         self.state = state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
-        held, motion = state.held_objects[name], command_motion(command, state.frame, state.place)
-        suspected = suspected_squares(chosen.outcome, motion, held, state.others(held), state.occupancy)
-        self.update_object(moved_object(state, held, chosen, motion, ranges, suspected))
+        now = replace(situation, state=state)
+        suspected = suspected_squares(chosen.outcome, now.motion, now.held, state.others(now.held), state.occupancy)
+        self.update_object(moved_object(now, chosen, suspected))
         self.state = replace(self.state, suspected_squares=state.suspected_squares | suspected, place=chosen.place)
         if chosen.outcome is not None and chosen.outcome.as_commanded:
             refined = refined_extent(self.state, self.state.held_objects[name], ranges, self.state.place)

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -13,7 +13,6 @@ import shapely
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, advance, motion_length, partial_outcome
-from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.obstacle_chance import ObstacleChance
@@ -26,8 +25,6 @@ CONTACT_DISTANCE_ERROR = 0.25  # squares by which the place of a contact may be 
 SAME_CONTACT_FRACTION = 1e-6  # fractions of a motion that differ by less are one contact: rounding
 UNREACHED_MARGIN = 1e-3  # squares by which an obstacle must be out of reach to be left out: far above rounding
 OBSTACLE_MARGIN = 3  # squares of the map around a motion that are taken as obstacles; more than a motion needs
-MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considered; tuned
-MAX_ENDS = 24  # ends that are considered: bounds the time of one explanation; tuned
 NO_SQUARES: frozenset[Square] = frozenset()
 
 
@@ -39,9 +36,6 @@ class ContactHypothesis(NamedTuple):
     # The likeliest of the open squares one of which is the obstacle then, (column, row) of the map frame; empty where
     # the obstacle is known
     squares: frozenset[Square] = NO_SQUARES
-
-
-EndOrContact = TypeVar("EndOrContact", Explanation, ContactHypothesis)
 
 
 class Obstructions:
@@ -83,12 +77,6 @@ class Obstructions:
             for group, chance in zip(together, chances, strict=True)
         ]
         return [*contacts, ContactHypothesis(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else contacts
-
-
-def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
-    """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most."""
-    likely = [(end, end.chance) for end in ends if end.chance is not None and end.chance > MIN_END_CHANCE]
-    return [end for end, _ in sorted(likely, key=lambda one: -one[1])[:MAX_ENDS]]
 
 
 def likeliest_contact_near(

@@ -102,29 +102,6 @@ def _other_ends(
                 yield _misled(hypothesis, correction, place, ahead == OCCUPIED)
 
 
-def reestimate_two_walks(
-    motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation]
-) -> Iterator[Explanation]:
-    """Yield ends of an earlier motion and of the newest one, both blocked by what is known, without contradictions."""
-    frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
-    walk = WalkInFrame(motion, frame, observations)
-    against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
-    for end in walk.ends[:-1]:
-        correction = WalkCorrection(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
-        there = correction.observations(before)
-        so_far = remap_if_consistent(frame, there, recent=MAX_CHECKED_OBSERVATIONS, only_whether=False)
-        if so_far is None or walk.state_ahead(end, so_far.occupancy) == FREE:
-            continue
-        onward = WalkInFrame(newest, frame, [*there, observations[-1]])
-        still = [WalkEnd(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
-        for halt in (*still, *onward.ends[:-1]):
-            under = remap_if_consistent(frame, [*there, observations[-1]._replace(place=halt.place)])
-            if under is None or under.residual or walk.state_ahead(end, under.occupancy) != OCCUPIED:
-                continue
-            if halt in still or onward.state_ahead(halt, under.occupancy) == OCCUPIED:
-                yield _misled(hypothesis, correction, halt.place, True)
-
-
 def _misled(
     hypothesis: FrameHypothesis, correction: WalkCorrection, newest: Position, contact_known: bool
 ) -> Explanation:
@@ -139,15 +116,13 @@ def remap_if_consistent(
     observations: Sequence[Observation],
     held_objects: Iterable[HeldObject] = (),
     unsettled: Sequence[UnsettledDisc] = (),
-    recent: int = MAX_CHECKED_OBSERVATIONS + 1,
     begun: MapReplay | None = None,
-    only_whether: bool = True,
 ) -> RemappedMap | None:
     """Return the map of all observations in a frame; None when two of the last observations contradict each other."""
     squares = observation_squares(frame, observations)
-    if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
+    if not _are_consistent(frame, squares, stack_ranges(observations), unsettled):
         return None
-    return remap(frame, frame, observations, held_objects, begun, only_whether)
+    return remap(frame, frame, observations, held_objects, begun, only_whether=True)
 
 
 def _are_consistent(
@@ -155,10 +130,9 @@ def _are_consistent(
     squares: NDArray[np.int64],
     ranges: NDArray[np.int16],
     unsettled: Sequence[UnsettledDisc] = (),
-    recent: int = MAX_CHECKED_OBSERVATIONS + 1,
 ) -> bool:
     """Return whether none of the last observations contradicts another."""
-    squares, ranges = squares[-recent:], ranges[-recent:]
+    squares, ranges = squares[-MAX_CHECKED_OBSERVATIONS - 1 :], ranges[-MAX_CHECKED_OBSERVATIONS - 1 :]
     apart = len(squares) // QUICK_CHECK_OBSERVATIONS
     if apart > 1 and count_contradictions_at(frame, squares[::-apart], ranges[::-apart], unsettled):  # with the newest
         return False

@@ -162,7 +162,8 @@ class RemapCache:
             self._known[key] = frame, under
             return under
         first, under = self._known[key]
-        there = {name: shift_object(held, frame, first) for name, held in under.held_objects.items()}
+        # The objects were first held where they were believed to lie, but every turn since was about another point
+        there = {name: object_at(held, object_pose(held, first), frame) for name, held in under.held_objects.items()}
         return under._replace(held_objects=there)
 
 
@@ -201,12 +202,6 @@ class ReplayPrefixes:
             self._known[stop] = replay.advance(self._observations, self._held_objects, stop).copy()
         self._alike[key] = self._known[number]
         return self._known[number]
-
-
-def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
-    """Return a held object for another origin of the frame with which every observation falls on the same squares."""
-    # The object was first held where it was believed to lie, but every turn since was about another point.
-    return _moved_to(held, held, object_pose(held, old), new)
 
 
 def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:

@@ -24,7 +24,7 @@ from utak.kb.localisation.hypotheses.carry_outcomes import (
     other_outcomes,
     predicted_outcome,
 )
-from utak.kb.localisation.hypotheses.contacts import ContactHypothesis, Obstructions
+from utak.kb.localisation.hypotheses.contacts import ContactHypothesis, Obstructions, contact_outcomes
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,
@@ -33,7 +33,6 @@ from utak.kb.localisation.hypotheses.frames import (
     Observation,
     Position,
     UnsettledDisc,
-    consistent_hypotheses,
     prune_hypotheses,
 )
 from utak.kb.localisation.hypotheses.map_prior import weigh_hypotheses
@@ -73,17 +72,20 @@ class ObservedSituation:
         return replace(self, state=replace(self.state, **changes))
 
     @property
-    def carried(self) -> tuple[HeldObject, Push | Turn] | None:
-        """Return the object that was to be moved, and the command (push or turn); None when none was."""
-        if self.state.in_hand is not None and isinstance(self.command, Push | Turn):
-            return self.state.held_objects[self.state.in_hand], self.command
-        return None
+    def carries(self) -> bool:
+        """Return whether the command was to move what is in hand: a push or a turn."""
+        return self.state.in_hand is not None and isinstance(self.command, Push | Turn)
+
+    @property
+    def held(self) -> HeldObject:
+        """Return the object in hand; raise KeyError when there is none."""
+        return self.state.held_objects[self.state.in_hand or ""]
 
     @cached_property
     def motion(self) -> Motion:
         """Return the commanded motion, map frame: that of what is in hand, or of Utak alone; cached."""
-        if self.carried is not None:
-            return command_motion(self.carried[1], self.state.frame, self.state.place)
+        if self.carries:
+            return self._motion_from(self.state.frame, self.state.place)
         if isinstance(self.command, Move) and self.state.in_hand is None:
             return Translate(*self.state.frame.to_map(self.command.east, self.command.north))
         return Translate(0.0, 0.0)
@@ -91,7 +93,7 @@ class ObservedSituation:
     @property
     def walked(self) -> bool:
         """Return whether Utak was to move alone."""
-        return self.carried is None and any(self.motion)
+        return not self.carries and any(self.motion)
 
     @property
     def shift(self) -> Position:
@@ -106,7 +108,7 @@ class ObservedSituation:
     @property
     def any_turned(self) -> bool:
         """Return whether any object was ever turned, or is to be turned now: then it tells where the origin lies."""
-        now = self.carried is not None and isinstance(self.motion, Rotate) and self.motion.degrees != 0.0
+        now = self.carries and isinstance(self.motion, Rotate) and self.motion.degrees != 0.0
         return now or any(held.turned % 360 for held in self.state.held_objects.values())
 
     @property
@@ -117,11 +119,15 @@ class ObservedSituation:
             return east + self.command.east, north + self.command.north
         return east, north
 
+    @property
+    def contact_ends(self) -> list[CarryOutcome]:
+        """Return the outcomes of the contacts that may have stopped what is in hand, the likeliest first."""
+        return contact_outcomes(self.contacts, self.state.place, self.held.polygon, self.motion)
+
     @cached_property
     def contacts(self) -> list[ContactHypothesis]:
         """Return the contacts that may have stopped what is in hand, in the order of the way; cached."""
-        assert self.carried is not None
-        return self.obstructions.contacts(self.state.place, self.carried[0].polygon, self.motion)
+        return self.obstructions.contacts(self.state.place, self.held.polygon, self.motion)
 
     # -- frames, before any object was moved -----------------------------------------------------
 
@@ -162,13 +168,6 @@ class ObservedSituation:
     # -- frames, once objects were moved ---------------------------------------------------------
 
     @cached_property
-    def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
-        """Return what all observations before the command leave of the frame hypotheses, in their order; cached."""
-        # Empty when they refute all.
-        observations = self.state.observations[-MAX_JUDGING_OBSERVATIONS:]
-        return consistent_hypotheses(observations, self.state.hypotheses, self.unsettled_discs)
-
-    @cached_property
     def judging_observations(self) -> list[Observation]:
         """Return the observations by which frames are judged, oldest first: the last earlier ones and the new one."""
         newest = Observation(self.ranges, self.commanded_place)
@@ -180,7 +179,7 @@ class ObservedSituation:
         discs, state = set(), self.state
         for held in state.held_objects.values():
             lying = [held.polygon, held.first]
-            if self.carried is not None and held.name == state.in_hand:
+            if self.carries and held.name == state.in_hand:
                 lying.append(self.motion.carry(held.polygon))
             middles = [state.frame.place_to_utak(lain.centroid.x, lain.centroid.y) for lain in lying]
             middles += [
@@ -209,7 +208,7 @@ class ObservedSituation:
         """Return the explanation by another frame, with the likeliest outcome; None where something contradicts it."""
         if self.remapped(frame).residual:
             return None
-        if self.carried is None:  # it went as commanded
+        if not self.carries:  # it went as commanded
             place = frame.place_from_utak(*self.commanded_place)
             turned = Explanation("turned", place, frame, 0, 0.0, None, hypotheses)
             return self._fitting(turned, self.remapped(frame).held_objects.values(), origin_error)
@@ -228,11 +227,8 @@ class ObservedSituation:
         slack: float = 0.0,
         origin_error: float = 0.0,
     ) -> Explanation | None:
-        """Return the explanation by a frame and an outcome of the motion of the object in hand; None likewise."""
-        assert self.carried is not None
-        if self.remapped(frame).residual:
-            return None
-        name, held_objects = self.carried[0].name, self.remapped(frame).held_objects
+        """Return the explanation by a frame that earlier observations agree with, and an outcome; None likewise."""
+        name, held_objects = self.held.name, self.remapped(frame).held_objects
         slack, commanded = max(held_objects[name].slack, slack), outcome.as_commanded
         moved = held_objects[name].moved(outcome.polygon, slack, outcome.degrees, commanded)
         turned = Explanation("turned", outcome.place, frame, 0, outcome.distance, outcome, hypotheses)
@@ -249,10 +245,16 @@ class ObservedSituation:
 
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
         """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame."""
-        assert self.carried is not None
-        held, command = self.carried
         place = frame.place_from_utak(*self.state.frame.place_to_utak(*self.state.place))
-        return place, self.remapped(frame).held_objects[held.name].polygon, command_motion(command, frame, place)
+        polygon = self.remapped(frame).held_objects[self.held.name].polygon
+        return place, polygon, self._motion_from(frame, place)
+
+    def _motion_from(self, frame: Frame, place: Position) -> Motion:
+        """Return the commanded motion of what is in hand as one of the map frame of `frame`, in squares or degrees."""
+        if isinstance(self.command, Turn):
+            return Rotate(self.command.degrees, place)
+        assert isinstance(self.command, Push)
+        return Translate(*frame.to_map(self.command.east, self.command.north))
 
     def remapped(self, frame: Frame) -> RemappedMap:
         """Return the map of all earlier observations in a frame, with the held objects; kept for each frame."""
@@ -332,13 +334,6 @@ def explained_by(situation: ObservedSituation, outcome: CarryOutcome) -> Explana
     """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
     residual = residual_at(situation, outcome.place, outcome)
     return Explanation(outcome.how, outcome.place, situation.state.frame, residual, outcome.distance, outcome)
-
-
-def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motion:
-    """Return a command as a motion of the map frame of `frame`, in squares or degrees."""
-    if isinstance(command, Turn):
-        return Rotate(command.degrees, place)
-    return Translate(*frame.to_map(command.east, command.north))
 
 
 def count_clashes(

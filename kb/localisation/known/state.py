@@ -10,6 +10,7 @@ from itertools import pairwise
 
 from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
+    PLAUSIBLE_COST,
     FrameHypothesis,
     Observation,
     OriginBox,
@@ -168,7 +169,7 @@ class TrackerState:
     @property
     def likely_spread(self) -> float:
         """Return the greatest difference between the believed orientation and a plausible one left, in radians."""
-        return self._spread(other for other in self.hypotheses if other.is_plausible)
+        return self._spread(other for other in self.hypotheses if other.prior_cost <= PLAUSIBLE_COST)
 
     def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
         """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians."""

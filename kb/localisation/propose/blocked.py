@@ -12,10 +12,7 @@ from collections.abc import Iterable
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, partial_outcome, predicted_outcome
 from utak.kb.localisation.hypotheses.contacts import (
-    MIN_END_CHANCE,
     NO_SQUARES,
-    contact_outcomes,
-    likeliest_ends,
 )
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import Position
@@ -32,6 +29,8 @@ from utak.kb.localisation.propose.contradicted_motion import overlooked_contact
 from utak.kb.mapping.obstacle_chance import ObstacleChance
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
+MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considered; tuned
+MAX_ENDS = 24  # ends that are considered: bounds the time of one explanation; tuned
 NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
 
 
@@ -44,10 +43,10 @@ def propose(situation: ObservedSituation) -> list[Explanation]:
         if situation.stands:
             return _weighed(situation, ends or [whole])
         fits = situation.another is None
-    if went and (fits or situation.carried is not None):
+    if went and (fits or situation.carries):
         return ends
     if fits:
-        contact = None if situation.carried is None else overlooked_contact(situation)
+        contact = overlooked_contact(situation) if situation.carries else None
         return [whole if contact is None else explained_by(situation, contact)]
     # Where no settled square contradicts it, two observations contradict each other
     return [whole._replace(contradicted=not whole.residual), *(one for one in ends if one.how == "blocked")]
@@ -62,9 +61,9 @@ def _weighed(situation: ObservedSituation, ends: list[Explanation]) -> list[Expl
 def propose_other_ends(situation: ObservedSituation) -> list[Explanation]:
     """Return the explanations that the newest motion ended anywhere on its way, or beside its end."""
     known, start, whole = any(one.is_end for one in situation.found), situation.state.place, situation.found[0].place
-    if situation.carried is not None:
-        polygon, motion = situation.carried[0].polygon, situation.motion
-        contacts = [] if known else contact_outcomes(situation.contacts, start, polygon, motion)
+    if situation.carries:
+        polygon, motion = situation.held.polygon, situation.motion
+        contacts = [] if known else situation.contact_ends
         met = [one for one in (explained_by(situation, end) for end in contacts) if not one.residual]
         return met + [explained_by(situation, other) for other in other_outcomes(start, polygon, motion)]
     ends = () if known or not situation.walked else blocked_ends(start, situation.shift)
@@ -74,8 +73,8 @@ def propose_other_ends(situation: ObservedSituation) -> list[Explanation]:
 
 def _whole_motion(situation: ObservedSituation) -> Explanation:
     """Return the explanation that the motion went as commanded."""
-    if situation.carried is not None:
-        end = predicted_outcome(situation.state.place, situation.carried[0].polygon, situation.motion)
+    if situation.carries:
+        end = predicted_outcome(situation.state.place, situation.held.polygon, situation.motion)
         return explained_by(situation, end)
     near = situation.state.places_near(situation.ahead)
     return min(
@@ -99,27 +98,27 @@ def possible_ends(situation: ObservedSituation) -> list[Explanation]:
     """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first."""
     # At a grid line each end is returned once for each side, for the observation may be made from either. How far the
     # observation contradicts them is not looked at.
-    if not isinstance(situation.motion, Translate) or not (situation.walked or situation.carried):
+    if not isinstance(situation.motion, Translate) or not (situation.walked or situation.carries):
         return []
-    if situation.carried is None:
-        contacts, whole = (
-            _walk_contacts(situation),
-            Explanation("predicted", situation.ahead, situation.state.frame, 0, 0.0),
-        )
-    else:
-        contacts, whole = _push_contacts(situation), _whole_motion(situation)
-    chance = 1.0 - sum(contact.chance or 0.0 for contact in contacts)
+    whole = _whole_motion(situation)._replace(place=situation.ahead)
+    contacts = _push_contacts(situation) if situation.carries else _walk_contacts(situation)
+    chance = 1.0 - sum(map(_chance, contacts))
     ends = _both_sides(whole._replace(chance=chance))
     if len(ends) == 1 and chance >= 1.0 - NEGLIGIBLE_CONTACT_CHANCE:
         return []
     first = ends[0].place
     far = [one if one.outcome else one._replace(distance=math.dist(one.place, first)) for one in contacts]
-    return [*ends, *likeliest_ends(far)]
+    likely = sorted((one for one in far if _chance(one) > MIN_END_CHANCE), key=lambda one: -_chance(one))
+    return [*ends, *likely[:MAX_ENDS]]
+
+
+def _chance(end: Explanation) -> float:
+    return 0.0 if end.chance is None else end.chance
 
 
 def _both_sides(end: Explanation) -> list[Explanation]:
     """Return an end once for each place from which the observation may be made there, its chance divided evenly."""
-    found, chance = observation_places(end.place), end.chance or 0.0
+    found, chance = observation_places(end.place), _chance(end)
     outcomes = (end.outcome and end.outcome._replace(place=view) for view in found)
     return [
         end._replace(place=view, chance=chance / len(found), outcome=outcome)
@@ -143,8 +142,7 @@ def _walk_contacts(situation: ObservedSituation) -> list[Explanation]:
 
 def _push_contacts(situation: ObservedSituation) -> list[Explanation]:
     """Return the ends of a push at each contact of Utak or of the object, in the order of the way."""
-    assert situation.carried is not None
-    state, polygon, motion = situation.state, situation.carried[0].polygon, situation.motion
+    state, polygon, motion = situation.state, situation.held.polygon, situation.motion
     found = []
     for contact in situation.contacts:
         end = partial_outcome(state.place, polygon, motion, contact.fraction, contact.squares)
@@ -166,10 +164,10 @@ def consistent_explanations(situation: ObservedSituation, explanations: Iterable
         if _settle_contact(after, one) and not count_clashes(
             state.frame, after, held_objects, one.place, situation.ranges
         ):
-            against = -math.log(max(one.chance or 0.0, MIN_END_CHANCE))
+            against = -math.log(max(_chance(one), MIN_END_CHANCE))
             found.append((MapDescription(after, drawn, against), one))
     costs = relative_costs([description for description, _ in found])
-    return [one._replace(prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
+    return [one._replace(residual=0, prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
 
 
 def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:

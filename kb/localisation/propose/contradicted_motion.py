@@ -11,7 +11,6 @@ from typing import Any
 
 from utak.geometry.motion.se2 import Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, other_outcomes, predicted_outcome
-from utak.kb.localisation.hypotheses.contacts import contact_outcomes
 from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, residual_at
 from utak.kb.mapping.occupancy import OCCUPIED
@@ -24,13 +23,11 @@ CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: i
 
 def overlooked_contact(situation: ObservedSituation) -> CarryOutcome | None:
     """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None."""
-    assert situation.carried is not None
-    place, polygon, motion = situation.state.place, situation.carried[0].polygon, situation.motion
-    if _is_contradicted(situation, predicted_outcome(place, polygon, motion)):
-        ends = contact_outcomes(situation.contacts, place, polygon, motion)
-        fitting = (end for end in ends if not residual_at(situation, end.place, end))
+    whole = predicted_outcome(situation.state.place, situation.held.polygon, situation.motion)
+    if _is_contradicted(situation, whole):
+        fitting = (end for end in situation.contact_ends if not residual_at(situation, end.place, end))
         return next((end for end in fitting if not _is_contradicted(situation, end)), None)
-    return shortened_turn(situation) if isinstance(motion, Rotate) else None
+    return shortened_turn(situation) if isinstance(situation.motion, Rotate) else None
 
 
 def _is_contradicted(situation: ObservedSituation, outcome: CarryOutcome) -> bool:
@@ -42,14 +39,14 @@ def _is_contradicted(situation: ObservedSituation, outcome: CarryOutcome) -> boo
 
 def shortened_turn(situation: ObservedSituation) -> CarryOutcome | None:
     """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None."""
-    assert situation.carried is not None and isinstance(situation.motion, Rotate)
-    state, held, motion = situation.state, situation.carried[0], situation.motion
+    assert isinstance(situation.motion, Rotate)
+    state, held, motion = situation.state, situation.held, situation.motion
     place, others = state.place, state.others(held)
     whole = _turned(held, motion.carry(held.polygon), held.slack, motion.degrees)
     crowded = _count_crowded(situation, whole, others, place)
     if crowded < MIN_CROWDED_SQUARES:
         return None
-    ends = contact_outcomes(situation.contacts, place, held.polygon, motion)
+    ends = situation.contact_ends
     ends += [end for end in other_outcomes(place, held.polygon, motion) if end.how == "blocked"]
     possible: list[tuple[int, float, CarryOutcome]] = []
     for end in ends:

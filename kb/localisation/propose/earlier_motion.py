@@ -4,7 +4,6 @@ Everything seen since then, and every object first held since then, lies elsewhe
 again with the correction, for what blocked the one may have blocked the other, seen where it really is.
 """
 
-import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 
@@ -15,16 +14,12 @@ from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, likeliest_first
 from utak.kb.localisation.hypotheses.frames import (
     Position,
-    any_origin,
-    consistent_hypotheses,
-    frames_to_try,
     observation_squares,
 )
 from utak.kb.localisation.hypotheses.recognition import places_within
 from utak.kb.localisation.hypotheses.reestimation import (
     WalkEnd,
     WalkInFrame,
-    reestimate_two_walks,
     remap_if_consistent,
 )
 from utak.kb.localisation.hypotheses.remap import object_at, remap
@@ -40,9 +35,6 @@ from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
-
-MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with the origin: bounds the time; tuned
-MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bounds the time; tuned
 
 
 def reestimate_motions(situation: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
@@ -60,13 +52,11 @@ def propose(
     state = situation.state
     if not state.held_objects:
         return _earlier_walks(situation) if situation.walked else []
-    simple = [one for one in situation.found if is_simple(state, one)]
-    here = [one for one in simple if one.frame == state.frame]
+    here = [one for one in situation.found if is_simple(state, one) and one.frame == state.frame]
     if here:
         known = any(one.chance is not None for one in here)
         return [] if known else [one for one in reestimate(situation, state.doubtful) if one.chance is not None]
-    found = reestimate(situation, state.earlier)
-    return found if found or simple else reestimate_with_origin(situation, state.earlier)
+    return reestimate(situation, state.earlier)
 
 
 def propose_slips(situation: ObservedSituation) -> list[Explanation]:
@@ -80,9 +70,7 @@ def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
     """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
     state, turned = situation.state, any(one.remaps and not one.unexplained for one in situation.found)
     simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
-    found = _blocked_elsewhere(situation, state.earlier if simple and not turned else state.reestimable)
-    met = any(one.contact_known or one.chance for one in found)
-    return found if met or not turned else [*found, *_both_blocked(situation)]
+    return _blocked_elsewhere(situation, state.earlier if simple and not turned else state.reestimable)
 
 
 def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHypothesis]) -> list[Explanation]:
@@ -94,19 +82,6 @@ def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHyp
     return [with_chance(state, one) for one, other in others if other.since != judged or one.frame != state.frame]
 
 
-def _both_blocked(situation: ObservedSituation) -> list[Explanation]:
-    """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame."""
-    state, newest = situation.state, situation.state.motions[-1]
-    believed = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
-    pairs = [(motion, hypothesis) for hypothesis in believed for motion in reversed(state.earlier)]
-    observations, ahead = situation.observations, state.frame.place_from_utak(*situation.observation.place)
-    found = (one for motion, h in pairs for one in reestimate_two_walks(motion, newest, h, observations))
-    return [
-        one._replace(distance=one.distance + math.dist(one.place, ahead), hypotheses=state.hypotheses, prior_cost=0.0)
-        for one in found
-    ]
-
-
 class CarriedMotion:
     """An earlier straight motion with an object in hand, in the believed frame."""
 
@@ -116,53 +91,33 @@ class CarriedMotion:
         state = situation.state
         frame, observations = state.frame, state.observations[: motion.number]
         pose = next(pose for pose in observations[-1].moved if pose.name == motion.in_hand)
-        self._place = frame.place_from_utak(*observations[-1].place)
-        self._polygon = object_at(state.held_objects[motion.in_hand], pose, frame).polygon
-        self._motion = Translate(*frame.to_map(*motion.shift))
+        place, way = frame.place_from_utak(*observations[-1].place), Translate(*frame.to_map(*motion.shift))
+        self._way = place, object_at(state.held_objects[motion.in_hand], pose, frame).polygon, way
         first = situation.prefixes.first(motion.number)
         before = remap(frame, frame, observations, state.held_objects.values(), first)
-        contacts = self._obstructions(before.occupancy).contacts(self._place, self._polygon, self._motion)
+        contacts = Obstructions(before.occupancy, *self._way).contacts(*self._way)
         likely = (contact.fraction for contact in sorted(contacts, key=lambda contact: -contact.chance))
-        fractions = dict.fromkeys((*likely, 1.0))
-        halts = [(part, view) for part in fractions for view in observation_places(self._place_after(part))]
+        places = {part: add(place, way.part(part)) for part in (*likely, 1.0)}
+        halts = [(part, view) for part, there in places.items() for view in observation_places(there)]
         self.ends = tuple(WalkEnd(frame.place_to_utak(*view), part) for part, view in halts)
-
-    def _place_after(self, fraction: float) -> Position:
-        """Return Utak's place after a fraction (0 to 1) of the motion, (x, y) in squares, map frame."""
-        return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
         """Return the state of what blocked the motion at `end`."""
         # OCCUPIED for something known, OPEN or FREE (1, -1, 0).
         # FREE if something known would have blocked it before, or if nothing can be met there;
-        body, obstructions = ContactBody(self._polygon, [self._place]), self._obstructions(occupancy)
-        known = obstructions.known.first_contact(body, self._motion)
+        (place, polygon, way), obstructions = self._way, Obstructions(occupancy, *self._way)
+        body = ContactBody(polygon, [place])
+        known = obstructions.known.first_contact(body, way)
         if things:
             stood = Obstacles([square_polygon(square) for square in things])
-            known = min(known, stood.first_contact(body, self._motion))
+            known = min(known, stood.first_contact(body, way))
         if known < end.progress - SAME_CONTACT_FRACTION:
             return FREE
         if known < 1.0 and known < end.progress + SAME_CONTACT_FRACTION:
             return OCCUPIED
-        contacts = obstructions.contacts(self._place, self._polygon, self._motion)
+        contacts = obstructions.contacts(*self._way)
         met = (abs(contact.fraction - end.progress) < SAME_CONTACT_FRACTION for contact in contacts)
         return OPEN if end.progress == 1.0 or any(met) else FREE
-
-    def _obstructions(self, occupancy: OccupancyMap) -> Obstructions:
-        """Return the obstacles about the motion in a map: occupied squares (`known`) and open ones, map frame."""
-        return Obstructions(occupancy, self._place, self._polygon, self._motion)
-
-
-def reestimate_with_origin(situation: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
-    """Return other ends, with another frame origin, of the newest carrying motion that explains everything so."""
-    # Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
-    # squares; where the observations since were made depends on the origin.
-    tried = (
-        motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, situation)
-    )
-    found = ([*_ends_with_origin(situation, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
-    ends = (with_chance(situation.state, one) for one in next(filter(None, found), []))
-    return sorted(ends, key=lambda one: not one.contact_known)
 
 
 def _has_known_pose(motion: MotionHypothesis, situation: ObservedSituation) -> bool:
@@ -217,7 +172,7 @@ def _consistent(
 def _newest_after_slip(supposed: ObservedSituation) -> Explanation | None:
     """Return where the newest observation was made after a slip, the likeliest place; None where none fits."""
     state, frame = supposed.state, supposed.state.frame
-    if supposed.carried is not None:
+    if supposed.carries:
         return supposed.by_frame(frame, state.hypotheses)
     # Where in its square the robot was after the slip is not known.
     near = places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5))
@@ -229,29 +184,6 @@ def _earlier(how: str, newest: Explanation, correction: WalkCorrection, contact_
     """Return the explanation that an earlier motion ended otherwise, and the newest observation was made so then."""
     distance = math.hypot(*correction.shift)
     return newest._replace(how=how, distance=distance, correction=correction, contact_known=contact_known)
-
-
-def _ends_with_origin(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
-    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
-    believed = situation.state.frame
-    origins, first = any_origin((believed.angle,)), situation.prefixes.first(motion.number)
-    for end in CarriedMotion(motion, situation).ends:
-        corrected, correction = _corrected(situation, motion, end)
-        left = consistent_hypotheses(corrected.judging_observations, origins, corrected.unsettled_discs)
-        if not left:
-            continue
-        observations, held_objects = corrected.state.observations, corrected.state.held_objects.values()
-        under = remap(believed, believed, observations, held_objects, first)
-        corrected = corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects)
-        for frame in frames_to_try(left, believed)[:MAX_FRAMES_PER_END]:
-            newest = corrected.by_frame(frame, left)
-            if newest is None:
-                continue
-            under = corrected.remapped(frame)
-            there = corrected.supposing(frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)
-            ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, _moved_since(there.state, motion))
-            if ahead != FREE:
-                yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
 def _corrected(

@@ -4,18 +4,17 @@ Hypotheses that are left are tried first, then those that were given up. That th
 unknown comes last.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
-    OFF_CENTRE_COST,
     FrameHypothesis,
     any_origin,
     consistent_hypotheses,
     frames_to_try,
 )
-from utak.kb.localisation.known.situation import ObservedSituation
+from utak.kb.localisation.known.situation import MAX_JUDGING_OBSERVATIONS, ObservedSituation
 from utak.kb.localisation.propose.origin_from_turns import origin_from_turn
 
 SEARCHED_ANGLE_MARGIN = 2  # degrees around the hypotheses left in which orientations are taken up again; tuned
@@ -64,20 +63,26 @@ def _best_frame(situation: ObservedSituation, simple: bool) -> Explanation | Non
             return found
     affordable = MAX_REMAPPED_OBSERVATIONS // (len(situation.state.observations) + 1)
     few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
-    for hypotheses, searched in _batches(situation):
-        crowded = searched and sum(hypothesis.area for hypothesis in hypotheses) < MIN_ORIGIN_AREA
-        found = (_blocked_motion(situation, few) if crowded else None) or _first_fitting(situation, hypotheses, few)
-        if found is not None:
-            return found
-    return _blocked_motion(situation, few)
+    left = _left(situation, situation.state.hypotheses)
+    found = _first_fitting(situation, left, few)
+    if found is not None:
+        return found
+    given_up = _given_up(situation)
+    crowded = sum(hypothesis.area for hypothesis in given_up) < MIN_ORIGIN_AREA
+    found = _blocked_motion(situation, few) if crowded else None
+    return found or _first_fitting(situation, given_up, few) or _blocked_motion(situation, few)
 
 
 def _other_orientation(situation: ObservedSituation) -> Explanation | None:
     """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none."""
     angle = situation.state.frame.angle
     others = [other for other in situation.state.hypotheses if other.is_centred and other.angle != angle]
-    left = consistent_hypotheses(situation.judging_observations, others, situation.unsettled_discs)
-    return _first_fitting(situation, left, MAX_EVALUATED_FRAMES)
+    return _first_fitting(situation, _left(situation, others), MAX_EVALUATED_FRAMES)
+
+
+def _left(situation: ObservedSituation, hypotheses: Iterable[FrameHypothesis]) -> tuple[FrameHypothesis, ...]:
+    """Return what the last observations leave of some hypotheses, in their order; empty when they refute all."""
+    return consistent_hypotheses(situation.judging_observations, hypotheses, situation.unsettled_discs)
 
 
 def _first_fitting(
@@ -88,35 +93,22 @@ def _first_fitting(
     return next(filter(None, (situation.by_frame(frame, hypotheses) for frame in frames)), None)
 
 
-def _batches(situation: ObservedSituation) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
-    """Yield sets of hypotheses to evaluate, the likeliest set first, each with whether given up before."""
-    recent, unsettled = situation.judging_observations, situation.unsettled_discs
-    left = consistent_hypotheses(recent, situation.state.hypotheses, unsettled)
-    plainest = tuple(hypothesis for hypothesis in left if hypothesis.prior_cost <= OFF_CENTRE_COST)
-    yield plainest, False
-    if len(plainest) < len(left):
-        yield consistent_hypotheses(recent, any_origin((situation.state.frame.angle,)), unsettled), True
-        yield tuple(hypothesis for hypothesis in left if hypothesis.prior_cost > OFF_CENTRE_COST), False
-    yield _reconsidered(situation), True
-
-
-def _reconsidered(situation: ObservedSituation) -> tuple[FrameHypothesis, ...]:
+def _given_up(situation: ObservedSituation) -> tuple[FrameHypothesis, ...]:
     """Return all hypotheses that observations leave, of orientations near to those that are left."""
-    # In the order of their angles, each an angle in degrees and a box of origins in squares, map frame; empty when none
-    # is left.
     angles = [situation.state.frame.angle, *(h.angle for h in situation.state.hypotheses)]
     if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
         angles = [situation.state.frame.angle]
-    about = any_origin(range(min(angles) - SEARCHED_ANGLE_MARGIN, max(angles) + SEARCHED_ANGLE_MARGIN + 1))
-    return consistent_hypotheses(situation.judging_observations, about, situation.unsettled_discs)
+    about = range(min(angles) - SEARCHED_ANGLE_MARGIN, max(angles) + SEARCHED_ANGLE_MARGIN + 1)
+    return _left(situation, any_origin(about))
 
 
 def _blocked_motion(situation: ObservedSituation, few: int) -> Explanation | None:
     """Return a frame that was left before the motion, in which the motion was blocked and nothing contradicts."""
     # None when there is none, or when no object was to be moved.
-    if situation.carried is None:
+    if not situation.carries:
         return None
-    before = situation.hypotheses_before
+    seen, unsettled = situation.state.observations[-MAX_JUDGING_OBSERVATIONS:], situation.unsettled_discs
+    before = consistent_hypotheses(seen, situation.state.hypotheses, unsettled)
     frames = frames_to_try(before, situation.state.frame)[:few]
     for cut_short in (False, True):
         tried = (situation.by_frame(frame, before, cut_short) for frame in frames)

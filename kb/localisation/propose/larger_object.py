@@ -25,8 +25,7 @@ SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, 
 
 def propose(situation: ObservedSituation) -> Iterator[Explanation]:
     """Yield explanations that a push went as commanded and the object is larger than it seemed."""
-    assert situation.carried is not None
-    held, motion = situation.carried[0], situation.motion
+    held, motion = situation.held, situation.motion
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
     for side in SIDE_DIRECTIONS:

@@ -84,7 +84,7 @@ def _origins_left(situation: ObservedSituation) -> tuple[FrameHypothesis, ...]:
 
 def _blocked_turns(situation: ObservedSituation, bounds: OriginBox) -> list[Explanation]:
     """Return what fits if a turn of the held object ended early; [] if there was no turn, or if nothing fits."""
-    if situation.carried is None or not isinstance(situation.motion, Rotate):
+    if not situation.carries or not isinstance(situation.motion, Rotate):
         return []
     place, polygon, motion = situation.motion_in(situation.state.frame)
     length, (west, south, east, north) = motion_length(place, polygon, motion), bounds

@@ -30,11 +30,11 @@ SAME_THING_DISTANCE = 2  # squares between squares that changed which count as o
 def propose(situation: ObservedSituation) -> list[Explanation]:
     """Return explanations by which others changed the table, one for each place where the look may have been made."""
     state = situation.state
-    if situation.carried is None:
+    if not situation.carries:
         ends = blocked_ends(state.place, situation.shift)
         found = _changes(situation, [*observation_places(situation.ahead), *ends])
     else:  # others took what is in hand before it was moved, or something else, however that ended
-        end = predicted_outcome(state.place, situation.carried[0].polygon, situation.motion)
+        end = predicted_outcome(state.place, situation.held.polygon, situation.motion)
         moved = {held.name: held for held in situation.objects_after(end)}
         after = situation.supposing(held_objects=moved)
         taken = [one for one in _changes(situation, [state.place]) if one.change and state.in_hand in one.change.gone]

@@ -24,8 +24,7 @@ from utak.kb.perception.seams import halves
 
 def propose(situation: ObservedSituation) -> Iterator[Explanation]:
     """Yield the explanation that a push went as commanded and the object is only a part of what seemed one thing."""
-    assert situation.carried is not None
-    held, motion, state = situation.carried[0], situation.motion, situation.state
+    held, motion, state = situation.held, situation.motion, situation.state
     if held.proven or not isinstance(motion, Translate):
         return
     patch = held.seen_on or patch_of_polygon(held.polygon)

@@ -15,8 +15,8 @@ from utak.kb.objects.held_object import HeldObject
 def propose(situation: ObservedSituation) -> list[Explanation]:
     """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing."""
     whole = situation.found[0]
-    assert situation.carried is not None and whole.outcome is not None
-    held, outcome = situation.carried[0], whole.outcome
+    assert whole.outcome is not None
+    held, outcome = situation.held, whole.outcome
     lying = held.moved(outcome.polygon, held.slack, outcome.degrees, commanded=True)
     less = refined_extent(situation.state, lying, situation.ranges, outcome.place)
     if less is None:

@@ -14,9 +14,9 @@ from utak.kb.localisation.hypotheses.remap import (
     MapReplay,
     RemapCache,
     ReplayPrefixes,
+    object_at,
     object_pose,
     remap,
-    shift_object,
 )
 from utak.kb.objects.held_object import HeldObject, snap_to_grid
 from utak.kb.perception.frame import CENTRE, Frame
@@ -59,7 +59,7 @@ def test_the_place_of_a_turned_object_depends_on_the_origin(
         here, truly = (here[0] + dx, here[1] + dy), (truly[0] + dx, truly[1] + dy)
         turned += degrees
     held = HeldObject("o1", believed, translate(ELL, 2, -1), turned=turned)
-    found = shift_object(held, Frame(0, (fx, fy)), Frame())
+    found = object_at(held, object_pose(held, Frame()), Frame(0, (fx, fy)))
     assert found.polygon.hausdorff_distance(true) < MAX_ERROR
 
 
