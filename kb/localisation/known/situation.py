@@ -64,7 +64,7 @@ class ObservedSituation:
     def having(self, found: Iterable[Explanation]) -> "ObservedSituation":
         """Return the situation with other explanations found; what was worked out of it is kept."""
         later = copy(self)
-        object.__setattr__(later, "found", tuple(found))
+        later.__dict__["found"] = tuple(found)
         return later
 
     def supposing(self, **changes: Any) -> "ObservedSituation":

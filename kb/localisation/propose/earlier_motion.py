@@ -5,7 +5,7 @@ again with the correction, for what blocked the one may have blocked the other, 
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
@@ -44,19 +44,26 @@ def reestimate_motions(situation: ObservedSituation, motions: Sequence[MotionHyp
     return sorted(found, key=lambda one: not one.contact_known)
 
 
-def propose(
-    situation: ObservedSituation,
-    reestimate: Callable[[ObservedSituation, Sequence[MotionHypothesis]], list[Explanation]] = reestimate_motions,
-) -> list[Explanation]:
+def propose(situation: ObservedSituation) -> list[Explanation]:
     """Return the explanations by which an earlier motion ended elsewhere than believed."""
-    state = situation.state
-    if not state.held_objects:
+    if not situation.state.held_objects:
         return _earlier_walks(situation) if situation.walked else []
-    here = [one for one in situation.found if is_simple(state, one) and one.frame == state.frame]
-    if here:
-        known = any(one.chance is not None for one in here)
-        return [] if known else [one for one in reestimate(situation, state.doubtful) if one.chance is not None]
-    return reestimate(situation, state.earlier)
+    found = reestimate_motions(situation, motions_in_question(situation))
+    return [one for one in found if one.chance is not None or not _simple_here(situation)]
+
+
+def motions_in_question(situation: ObservedSituation) -> tuple[MotionHypothesis, ...]:
+    """Return the earlier motions that may have ended elsewhere, once objects were moved, oldest first."""
+    state, here = situation.state, _simple_here(situation)
+    if not here:
+        return state.earlier
+    return () if any(one.chance is not None for one in here) else state.doubtful
+
+
+def _simple_here(situation: ObservedSituation) -> list[Explanation]:
+    """Return the simple explanations in the believed frame."""
+    state = situation.state
+    return [one for one in situation.found if is_simple(state, one) and one.frame == state.frame]
 
 
 def propose_slips(situation: ObservedSituation) -> list[Explanation]:

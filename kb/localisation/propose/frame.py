@@ -1,7 +1,8 @@
 """Proposals of another frame, by the map prior, or when observations contradict what is believed.
 
-Hypotheses that are left are tried first, then those that were given up. That the motion was blocked by something
-unknown comes last.
+Hypotheses that are left are tried first, then those that were given up; where these leave hardly any room for the
+origin, it is likelier that the motion was blocked by something unknown. Another frame is believed only where nothing
+contradicts it.
 """
 
 from collections.abc import Iterable
@@ -70,7 +71,7 @@ def _best_frame(situation: ObservedSituation, simple: bool) -> Explanation | Non
     given_up = _given_up(situation)
     crowded = sum(hypothesis.area for hypothesis in given_up) < MIN_ORIGIN_AREA
     found = _blocked_motion(situation, few) if crowded else None
-    return found or _first_fitting(situation, given_up, few) or _blocked_motion(situation, few)
+    return found or _first_fitting(situation, given_up, few)
 
 
 def _other_orientation(situation: ObservedSituation) -> Explanation | None:
