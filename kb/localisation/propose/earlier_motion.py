@@ -13,6 +13,7 @@ from utak.kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obst
 from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, likeliest_first
 from utak.kb.localisation.hypotheses.frames import (
+    PLAUSIBLE_COST,
     Position,
     observation_squares,
 )
@@ -75,9 +76,14 @@ def propose_slips(situation: ObservedSituation) -> list[Explanation]:
 
 def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
     """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
-    state, turned = situation.state, any(one.remaps and not one.unexplained for one in situation.found)
+    state, frames = situation.state, [one for one in situation.found if one.remaps and not one.unexplained]
+    turned = any(one.prior_cost <= PLAUSIBLE_COST for one in frames)
     simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
-    return _blocked_elsewhere(situation, state.earlier if simple and not turned else state.reestimable)
+    if not turned:
+        return _blocked_elsewhere(situation, state.earlier if simple else state.reestimable)
+    found = _blocked_elsewhere(situation, state.reestimable)
+    odd = not state.off_middle and all(one.is_odd for one in frames)
+    return [one for one in found if (one.contact_known or one.chance) and (odd or one.frame == state.frame)]
 
 
 def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHypothesis]) -> list[Explanation]:
