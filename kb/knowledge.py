@@ -16,8 +16,8 @@ from pathlib import Path
 
 from utak.kb.body import Command, Grasp, Impression
 from utak.kb.localisation.field_account import Accommodation
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.localisation.standing import standing
-from utak.kb.localisation.state import TrackerState
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
 from utak.kb.mapping.occupancy import OPEN, MapView

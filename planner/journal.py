@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from utak.geometry.kernels.arrays import XY
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.tracing.decisions import SolverCall
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, OriginBox, Position
 from utak.kb.localisation.hypotheses.walk_outcomes import add
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.objects.held_object import Square
 from utak.kb.perception.frame import Frame
 

@@ -11,16 +11,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from utak.kb.body import Command, Impression, Move, Push, Release, Turn
-from utak.kb.localisation.after_carry import (
-    agreeing_origins,
-    contact_suspects,
-    explain_carry,
-    moved_object,
-    objects_astray,
-    turned_astray,
-)
-from utak.kb.localisation.after_walk import DeadReckoning, explain_walk
 from utak.kb.localisation.field_account import Accommodation, account_for_fields
+from utak.kb.localisation.held_object_state import agreeing_origins, moved_object, objects_astray, turned_astray
+from utak.kb.localisation.hypotheses.contacts import suspected_squares
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, TableChange
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
@@ -31,22 +25,20 @@ from utak.kb.localisation.hypotheses.frames import (
     observation_squares,
 )
 from utak.kb.localisation.hypotheses.recognition import half_cell, narrowed, place_of, recognise, told_by_contact
-from utak.kb.localisation.hypotheses.reestimation import WalkCorrection
 from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     MotionHypothesis,
     add,
-    blocked_ends,
     entered_square,
     observation_places,
     snap_to_middle,
 )
-from utak.kb.localisation.hypotheses.what_if import command_motion
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, residual_at
+from utak.kb.localisation.known.state import TrackerState
+from utak.kb.localisation.proposals import explain
 from utak.kb.localisation.propose.lifted import MIN_KNOWN_LOOKS, look_at
 from utak.kb.localisation.propose.others import forgetting
 from utak.kb.localisation.propose.smaller_object import refined_extent
-from utak.kb.localisation.score import Judgement, residual_at
-from utak.kb.localisation.state import TrackerState
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of_squares
@@ -88,7 +80,9 @@ class Tracker:
         first, newest = state.observations[0].place, state.observations[-1]
         away = former.frame.to_map(newest.place[0] - first[0], newest.place[1] - first[1])
         earlier = () if state.slips else state.looks  # whose motions slip does not know how its looks lie to each other
-        self.state = state = replace(state, looks=(*earlier, look_at(former.surprise(command, newest.ranges), away)))
+        self.state = state = replace(
+            state, looks=(*earlier, look_at(ObservedSituation(former, command, newest.ranges), away))
+        )
         is_known = len(former.observations) >= MIN_KNOWN_LOOKS and not state.held_objects
         found = recognise(former.occupancy, state.looks) if is_known else None
         if found is None or (state.slips and len(set(map(_square_of, found.points))) > 1):  # later looks would not tell
@@ -100,7 +94,7 @@ class Tracker:
         def clashes(point: Position) -> int:
             """Return how many fields of all looks contradict the map if the newest was made at a point."""
             return sum(
-                residual_at(former, one.ranges, add(point, way), former.held_objects.values())
+                residual_at(ObservedSituation(former, command, one.ranges), add(point, way))
                 for one, way in zip(looked, ways, strict=True)
             )
 
@@ -113,7 +107,7 @@ class Tracker:
         self._put_elsewhere((0.0, 0.0, 0.0, 0.0) if state.slips else error)
         for way, observation in zip(ways, looked, strict=True):
             there = add(place, way)
-            residual = residual_at(self.state, observation.ranges, there, self.state.held_objects.values())
+            residual = residual_at(ObservedSituation(self.state, command, observation.ranges), there)
             recognised = Explanation("slipped" if state.slips else "lifted", there, former.frame, residual, 1.0)
             accommodated = self._integrate(recognised, observation.ranges)
         return accommodated
@@ -132,22 +126,15 @@ class Tracker:
 
     def wake(self, impression: Impression) -> Accommodation:
         """Explain and integrate the first impression; `state` is replaced."""
-        return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
+        return self._accommodate(ObservedSituation(self.state, None, count_ranges(impression.retina)))
 
     def accommodate(self, command: Command, impression: Impression) -> Accommodation:
         """Explain and integrate the impression that followed a command; `state` is replaced."""
-        ranges, state = count_ranges(impression.retina), self.state
-        if state.in_hand is not None and isinstance(command, Push | Turn):
-            return self._after_carry(ranges, state.in_hand, command)
+        ranges = count_ranges(impression.retina)
         if isinstance(command, Release):
-            self.state = state = replace(state, in_hand=None)
-        shift = (0.0, 0.0)
-        if isinstance(command, Move) and state.in_hand is None:
-            shift = state.frame.to_map(command.east, command.north)
-        x, y = state.place
-        return self._after_walk(
-            ranges, DeadReckoning((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command
-        )
+            self.state = replace(self.state, in_hand=None)
+        self._prepare(ObservedSituation(self.state, command, ranges))
+        return self._accommodate(ObservedSituation(self.state, command, ranges))
 
     def grasp(self, held: HeldObject) -> None:
         """Believe that an object is in the hand; `state` is replaced."""
@@ -176,35 +163,59 @@ class Tracker:
         """Keep the newest completions of the map in `state`; the chance of a contact is estimated by them."""
         self.state = replace(self.state, completions=completions)
 
-    # -- after a walk, on waking, after a release ------------------------------------------------
+    # -- an observation ---------------------------------------------------------------------------
 
-    def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodation:
-        """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
-        if walk.blocked and isinstance(command, Move):
-            self._remember(command)
-        judged = explain_walk(self.state, ranges, walk, command)
-        explanation = judged.explanation
-        if explanation.how == "lost":
-            return self._unexplained(explanation, ranges)
-        self._learn(judged)
-        self._apply(explanation)
-        explanation = self._narrow(explanation, walk.predicted, ranges)
-        self._count_confirmations(explanation)
-        self._note_motion(explanation)
-        if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
-            entered = entered_square(explanation.place, walk.predicted)
-            squares = explanation.contact_squares or frozenset([entered] if entered else [])
+    def _prepare(self, situation: ObservedSituation) -> None:
+        """Remember a straight motion in `state`, and how far a turn may lead what is in hand astray."""
+        state, command = situation.state, situation.command
+        held = situation.held if situation.carries else None
+        if held is not None and isinstance(command, Turn) and (state.beside_line or state.place_doubt):
+            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
+            self.update_object(held)
+        if held is not None and held.touching:  # the other thing may reach into squares that it leaves
+            lay, there = held.seen_on or held.lying(held.first).possible, situation.motion.carry(held.polygon)
+            state.occupancy.uncover(lay, held.lying(there).possible, held.since - 1)
+        if isinstance(command, Push | Move) and (held is not None or situation.walked):
+            way, name = (command.east, command.north), None if held is None else held.name
+            motion = MotionHypothesis(len(state.observations), way, state.hypotheses, in_hand=name)
+            self.state = replace(self.state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
+
+    def _accommodate(self, situation: ObservedSituation) -> Accommodation:
+        """Explain and integrate an observation."""
+        chosen, ends = explain(situation)
+        if chosen.how == "lost":
+            return self._unexplained(chosen, situation.ranges)
+        self._learn(chosen, ends)
+        self._apply(chosen)
+        if not situation.carries:
+            chosen = self._end_walk(situation, chosen)
+        elif self.state.in_hand == situation.held.name:
+            self._move_object(situation, chosen)
+        return self._integrate(chosen, situation.ranges)
+
+    def _end_walk(self, situation: ObservedSituation, chosen: Explanation) -> Explanation:
+        """Note in `state` how a walk ended by the chosen explanation, and return where the look was made."""
+        ahead = situation.ahead
+        chosen = self._narrow(situation, chosen)
+        number = self.state.confirmations
+        number = number + 1 if chosen.how == "predicted" else number * (chosen.chance is not None)
+        self.state = replace(self.state, confirmations=number)
+        if chosen.how == "slipped":
+            self.state = replace(self.state, slipped=True, motions=())
+        if chosen.how == "blocked" or chosen.place == self.state.place != ahead:
+            entered = entered_square(chosen.place, ahead)
+            squares = chosen.contact_squares or frozenset([entered] if entered else [])
             self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
-        return self._integrate(explanation, ranges)
+        return chosen
 
-    def _narrow(self, explanation: Explanation, predicted: Position, ranges: FieldRanges) -> Explanation:
+    def _narrow(self, situation: ObservedSituation, explanation: Explanation) -> Explanation:
         """Narrow in `state` where the robot may be since it was lifted, by a look; return where the look was made."""
         state = self.state
         if not any(state.place_error) or explanation.how in ("lifted", "misled", "turned"):
             return explanation
-        centre = predicted if explanation.how in ("predicted", "changed") else explanation.place
-        near, held = state.places_near(centre), state.held_objects.values()
-        clashes = [residual_at(state, ranges, place, held) for place in near]
+        centre = situation.ahead if explanation.how in ("predicted", "changed") else explanation.place
+        near, held, frame = state.places_near(centre), state.held_objects.values(), state.frame
+        clashes = [count_clashes(frame, state.occupancy, held, place, situation.ranges) for place in near]
         fitting = [place for place, many in zip(near, clashes, strict=True) if many == min(clashes)]
         place, error = narrowed(centre, state.place_error, fitting)
         if explanation.how == "blocked":
@@ -233,62 +244,21 @@ class Tracker:
         left, counts = subtract_held_objects(samples, ranges, x, y, self.state.held_objects.values())
         return Accommodation(explanation, account_for_fields(occupancy, left, ranges, counts, (x, y)))
 
-    def _count_confirmations(self, explanation: Explanation) -> None:
-        """Count a predicted observation as a confirmation in `state`."""
-        number = self.state.confirmations
-        number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
-        self.state = replace(self.state, confirmations=number)
-
-    def _note_motion(self, explanation: Explanation) -> None:
-        """Note in `state` that motions slip, or which remembered motion was blocked, if an explanation says so."""
-        state = self.state
-        if explanation.how == "slipped":
-            self.state = replace(state, slipped=True, motions=())
-        elif explanation.how in ("blocked", "misled"):
-            walk = explanation.reestimated
-            since = len(state.observations) if walk is None else walk.correction.since
-            motions = tuple(m._replace(blocked=True) if m.number == since else m for m in state.motions)
-            self.state = replace(state, motions=motions)
-
-    # -- after a push or a turn ------------------------------------------------------------------
-
-    def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodation:
-        """Explain and integrate an observation after a push or a turn of the held object `name`."""
-        state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
-        held = state.held_objects[name]
-        if isinstance(command, Turn) and (state.beside_line or state.place_doubt):
-            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING, turned_astray(state, command.degrees)))
-            self.update_object(held)
-        if held.touching:  # the other thing may reach into squares that it leaves
-            lay, now = held.seen_on or held.lying(held.first).possible, held.lying(motion.carry(held.polygon)).possible
-            state.occupancy.uncover(lay, now, held.since - 1)
-        judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
-        if judged.explanation.how == "lost":
-            return self._unexplained(judged.explanation, ranges)
-        if isinstance(command, Push):
-            self._remember(command, name)
-        self._learn(judged)
-        self._apply(judged.explanation)
-        if name in self.state.held_objects and self.state.in_hand == name:
-            self._move_object(name, judged.explanation, command, ranges)
-        return self._integrate(judged.explanation, ranges)
-
-    def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
+    def _move_object(self, situation: ObservedSituation, chosen: Explanation) -> None:
         """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""
+        name, ranges = situation.held.name, situation.ranges
         if chosen.instead is not None:
             self._declare(chosen.instead.possible, FREE)
             self.update_object(chosen.instead)
         if chosen.left:
             self._declare(patch_of_squares(chosen.left), OCCUPIED)
-        self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
-        held, motion = self.state.held_objects[name], command_motion(command, self.state.frame, self.state.place)
-        suspected = contact_suspects(self.state, held, chosen, motion)
-        self.update_object(moved_object(self.state, held, chosen, motion, ranges, suspected))
-        self.state = replace(self.state, suspected_squares=self.state.suspected_squares | suspected, place=chosen.place)
+        self.state = state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
+        now = replace(situation, state=state)
+        suspected = suspected_squares(chosen.outcome, now.motion, now.held, state.others(now.held), state.occupancy)
+        self.update_object(moved_object(now, chosen, suspected))
+        self.state = replace(self.state, suspected_squares=state.suspected_squares | suspected, place=chosen.place)
         if chosen.outcome is not None and chosen.outcome.as_commanded:
-            refined = refined_extent(
-                self.state.surprise(command, ranges), self.state.held_objects[name], self.state.place
-            )
+            refined = refined_extent(self.state, self.state.held_objects[name], ranges, self.state.place)
             if refined is not None:
                 self.update_object(refined)
         self.state = replace(self.state, hypotheses=agreeing_origins(self.state, ranges))
@@ -308,8 +278,8 @@ class Tracker:
         if chosen.remaps:
             state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
             held_objects = held_or_moved(held_objects, state.in_hand)
-        if chosen.reestimated is not None:
-            correction = chosen.reestimated.correction
+        if chosen.correction is not None:
+            correction = chosen.correction
             own = state.frame.place_to_utak(*state.place)
             observations = tuple(correction.observations(state.observations))
             held_objects = correction.held_objects(held_objects, state.frame)
@@ -318,10 +288,11 @@ class Tracker:
         elif chosen.frame == state.frame:
             self.state = state
             return
-        if chosen.reestimated is not None or len(held_objects) < len(state.held_objects):
+        as_before = chosen.correction is None and len(held_objects) == len(state.held_objects)
+        maps = RemapCache(state.frame, state.occupancy, state.observations, held_objects)
+        under = maps.remapped(chosen.frame) if as_before else None
+        if under is None or under.residual:
             under = remap(chosen.frame, state.frame, state.observations, held_objects.values())
-        else:
-            under = RemapCache(state.frame, state.occupancy, state.observations, held_objects).remapped(chosen.frame)
         self.state = _remapped(replace(state, frame=chosen.frame), under)
 
     def _forget_changed(self, change: TableChange) -> None:
@@ -344,27 +315,18 @@ class Tracker:
             removed=state.removed + len(change.gone),
         )
 
-    def _learn(self, judged: Judgement) -> None:
-        """Keep in `state` what was learnt while an explanation was chosen: searches, hypotheses, ends of the motion."""
-        state, chosen = self.state, judged.explanation
-        if judged.hypotheses is not None:
-            state = replace(state, hypotheses=judged.hypotheses)
-        self.state = state = replace(state, search_count=judged.searches)
-        if not judged.blocked or chosen.frame != state.frame or state.motions[-1].number != len(state.observations):
+    def _learn(self, chosen: Explanation, ends: Iterable[Explanation]) -> None:
+        """Keep in `state` which frame hypotheses are left, and where else the newest motion may have ended."""
+        state = self.state
+        if chosen.hypotheses and not chosen.remaps:
+            self.state = state = replace(state, hypotheses=chosen.hypotheses)
+        weights = [(one, (one.chance or 0.0) * math.exp(-one.prior_cost)) for one in ends]
+        if not weights or chosen.frame != state.frame or state.motions[-1].number != len(state.observations):
             return
-        weights = [(one, (one.chance or 0.0) * math.exp(-one.prior_cost)) for one in judged.blocked]
         total = sum(weight for _, weight in weights)
         others = [(state.frame.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place]
         motions = (*state.motions[:-1], state.motions[-1]._replace(alternative_ends=tuple(others)))
         self.state = replace(state, motions=motions)
-
-    def _remember(self, command: Move | Push, name: str | None = None) -> None:
-        """Remember a straight motion in `state`, for it may have ended otherwise than believed."""
-        state = self.state
-        motion = MotionHypothesis(
-            len(state.observations), (command.east, command.north), state.hypotheses, in_hand=name
-        )
-        self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
     def _declare(self, patch: Patch, value: int) -> None:
         """Settle the squares of a patch, map frame, as FREE or OCCUPIED."""

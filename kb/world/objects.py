@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from utak.geometry.kernels.arrays import Bools, Labels, Square
 from utak.geometry.raster.components import bounding_boxes
-from utak.kb.localisation.state import TrackerState
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance

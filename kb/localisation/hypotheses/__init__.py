@@ -6,10 +6,10 @@ frames  frame hypotheses: orientation and origin of the grid, judged by contradi
 remap  all observations and held objects in another frame
 map_prior  the description length of the simplest map in a frame
 walk_outcomes  where a walk may have ended, at and beside grid lines
-reestimation  other ends of a remembered walk, when observations contradict each other
 carry_outcomes  what a push or a turn may have led to
-contacts  contact hypotheses: what may have blocked a held object, and where
-what_if  evaluation of a frame and an outcome against all observations, once objects were moved
-recognition  where on a known map a look fits, once the robot was put elsewhere
+correction  how everything since is shifted where an earlier motion ended elsewhere than believed
 explanation  an explanation of an observation, and the choice by kb/asp/accommodation.lp
+reestimation  other ends of a remembered walk, when observations contradict each other
+contacts  contact hypotheses: what may have blocked a held object, and where
+recognition  where on a known map a look fits, once the robot was put elsewhere
 """

@@ -78,10 +78,6 @@ class Obstructions:
         ]
         return [*contacts, ContactHypothesis(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else contacts
 
-    def outcomes(self, place: Position, polygon: Any, motion: Motion) -> list[CarryOutcome]:
-        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first; [] for none."""
-        return contact_outcomes(self.contacts(place, polygon, motion), place, polygon, motion)
-
 
 def likeliest_contact_near(
     contacts: Iterable[ContactHypothesis], place: Position, polygon: Any, motion: Motion, fraction: float

@@ -2,12 +2,12 @@
 
 import math
 import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.frames import FrameHypothesis, OriginBox, Position
-from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk
 from utak.kb.objects.held_object import HeldObject, Square
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.reasoning.encodings import KB_ENCODINGS
@@ -44,11 +44,9 @@ class Explanation(NamedTuple):
     # far the object goes on beyond what was seen; for changed how many things others moved, took or brought
     distance: float
     outcome: CarryOutcome | None = None  # of the motion of the object in hand; None when nothing was to be moved
-    # The frame hypotheses that are left, if the frame or the ends of motions are others; else empty
-    hypotheses: tuple[FrameHypothesis, ...] = ()
-    # The motion, earlier or newest, that ended elsewhere than believed, with the shift of all observations since,
-    # (east, north) in squares, Utak's own frame; None when none did
-    reestimated: ReestimatedWalk | None = None
+    hypotheses: tuple[FrameHypothesis, ...] = ()  # the frame hypotheses that are left; empty where they stay
+    correction: WalkCorrection | None = None  # of a motion that ended elsewhere than believed; None when none did
+    contact_known: bool = False  # whether something known stands where that motion was blocked
     # The probability (0 to 1) of this end of the motion before the observation; None when it was not asked
     chance: float | None = None
     # By how much the simplest map costs more than by the best explanation, in log odds (natural logarithm)
@@ -75,12 +73,12 @@ class Explanation(NamedTuple):
     @property
     def remaps(self) -> bool:
         """Return whether the frame, or where earlier observations were made, is another one than believed."""
-        return self.how in ("turned", "misled", "lost", "anew") or self.reestimated is not None
+        return self.how in ("turned", "misled", "lost", "anew") or self.correction is not None
 
     @property
-    def met_known(self) -> bool:
-        """Return whether the re-estimated motion was blocked by something that is known by now; False without one."""
-        return self.reestimated is not None and self.reestimated.contact_known
+    def is_end(self) -> bool:
+        """Return whether it is an end of the newest motion in the believed frame, with its chance."""
+        return self.how in ("predicted", "blocked") and self.chance is not None
 
     @property
     def is_odd(self) -> bool:
@@ -88,22 +86,12 @@ class Explanation(NamedTuple):
         return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 
-def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
-    """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation."""
-    found = [one for motion in ends for one in motion]
-    if not found:
-        return []
-    left = tuple(dict.fromkeys(one.hypothesis for one in found))
-    middle = statistics.median(hypothesis.angle for hypothesis in left)
-    ordered = sorted(found, key=lambda one: (not one.contact_known, abs(one.hypothesis.angle - middle)))
-    return [reestimated_explanation(one, left) for one in ordered]
-
-
-def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
-    """Return the explanation, of kind misled, by a re-estimated motion."""
-    frame, distance = one.hypothesis.frame, math.hypot(*one.correction.shift)
-    place = frame.place_from_utak(*one.newest)
-    return Explanation("misled", place, frame, one.residual, distance, None, left, one)
+def likeliest_first(found: Sequence[Explanation]) -> list[Explanation]:
+    """Return re-estimations with all hypotheses of them: known contacts, then the median orientation first."""
+    left = tuple(dict.fromkeys(hypothesis for one in found for hypothesis in one.hypotheses))
+    middle = statistics.median(hypothesis.angle for hypothesis in left) if left else 0
+    ordered = sorted(found, key=lambda one: (not one.contact_known, abs(one.frame.angle - middle)))
+    return [one._replace(hypotheses=left) for one in ordered]
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:

@@ -59,11 +59,6 @@ class FrameHypothesis(NamedTuple):
         return self.box == CENTRE + CENTRE
 
     @property
-    def is_plausible(self) -> bool:
-        """Return whether its map prior is hardly worse than the best one: by PLAUSIBLE_COST (5) log odds at most."""
-        return self.prior_cost <= PLAUSIBLE_COST
-
-    @property
     def area(self) -> float:
         """Return the area of the box in squares^2, 0 to 1; 0 for an exact origin."""
         west, south, east, north = self.box

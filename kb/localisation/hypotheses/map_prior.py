@@ -47,8 +47,8 @@ SquaresKey = tuple[int, bytes]
 class MapDescription:
     """A map, and the simplest completion of it that was drawn so far, scene by scene."""
 
-    def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None) -> None:
-        """Begin with no completion."""
+    def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None, against: float = 0.0) -> None:
+        """Begin with no completion. against : log odds (natural logarithm) against what it is the map of."""
         self._view = occupancy.view()
         self._ground = given_squares(self._view)
         self._scenes = list(scenes(self._view, self._ground))
@@ -57,6 +57,7 @@ class MapDescription:
         self._drawn: DrawnScenes = {} if drawn is None else drawn
         self._rounds = 0
         self.price = np.inf
+        self.against = against
 
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
         """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm)."""
@@ -78,6 +79,11 @@ class MapDescription:
         return LOG_ODDS_PER_COST * float(costs(self._image[None], self._ground, self._view.counts, edge)[0])
 
     @property
+    def odds(self) -> float:
+        """Return the log odds (natural logarithm) against the map and what it is the map of; less is better."""
+        return self.price + self.against
+
+    @property
     def bend_ratio(self) -> float:
         """Return the cost of corners and wrong counts, divided by the cost of edges; small for straight sides."""
         bends = self.cost(0.0)
@@ -93,35 +99,17 @@ def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, 
     return float(prices.min()), images[prices.argmin()]
 
 
-class FrameTrial:
-    """The map of some observations in a frame, with the prior of its orientation."""
-
-    def __init__(self, frame: Frame, observations: Sequence[Observation]) -> None:
-        """Begin with no completion."""
-        self.description = MapDescription(remap(frame, frame, observations, ()).occupancy)
-        self._oblique = OBLIQUE_COST * (frame.angle != 0)
-
-    def draw(self, effort: Effort = FULL_EFFORT) -> float:
-        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm)."""
-        return self.description.draw(effort)
-
-    @property
-    def odds(self) -> float:
-        """Return the log odds (natural logarithm) against the frame, by its map and its orientation; less is better."""
-        return self.description.price + self._oblique
-
-
-def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
+def relative_costs(maps: Sequence[MapDescription]) -> list[float]:
     """Return by how much each map costs more than the best one, in log odds (natural logarithm)."""
     # Edges are not counted, for the maps may differ in size.
-    for description, _ in maps:
+    for description in maps:
         description.draw()
     for _ in range(MAX_REDRAWS):
-        odds = [description.cost(0.0) + against for description, against in maps]
+        odds = [description.cost(0.0) + description.against for description in maps]
         close = [n for n, one in enumerate(odds) if one <= min(odds) + CLOSE_ODDS]
         for n in close if len(close) > 1 else ():
-            maps[n][0].draw()
-    prices = [description.cost(0.0) for description, _ in maps]
+            maps[n].draw()
+    prices = [description.cost(0.0) for description in maps]
     return [price - min(prices) for price in prices]
 
 
@@ -147,7 +135,7 @@ def weigh_hypotheses(
     if len(likely) < 2:
         return tuple(h._replace(prior_cost=h.prior_cost - least) for h in hypotheses)
     if least < UNTRIED_COST and any(one.prior_cost for one in alike.values()):
-        trials = {key: _trial(alike[key], observations) for key in likely[:MAX_REWEIGHED_FRAMES]}
+        trials = {key: _trial(alike[key].frame, observations) for key in likely[:MAX_REWEIGHED_FRAMES]}
     else:  # for the first time, or all that were likely are given up
         trials = _first_trials(alike, observations)
     odds = _odds(trials, alike)
@@ -158,9 +146,12 @@ def weigh_hypotheses(
 
 
 def _odds(
-    trials: Mapping[SquaresKey, FrameTrial], alike: Mapping[SquaresKey, AlikeHypotheses]
+    trials: Mapping[SquaresKey, MapDescription], alike: Mapping[SquaresKey, AlikeHypotheses]
 ) -> dict[SquaresKey, float]:
     """Return the log odds (natural logarithm) against each trial, by key, origin included; the less the better."""
+    for trial in trials.values():
+        if trial.price == np.inf:
+            trial.draw()
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
     close = [key for key in odds if odds[key] <= best + CLOSE_ODDS]
@@ -198,7 +189,7 @@ def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[S
 
 def _first_trials(
     alike: Mapping[SquaresKey, AlikeHypotheses], observations: Sequence[Observation]
-) -> dict[SquaresKey, FrameTrial]:
+) -> dict[SquaresKey, MapDescription]:
     """Return trials, by key, of the frames that may be best: the likeliest origin of each orientation, then others."""
     parts: dict[int, list[SquaresKey]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
@@ -207,15 +198,13 @@ def _first_trials(
     leading = sorted(trials, key=lambda angle: trials[angle].odds)
     others = [key for angle in leading for key in parts[angle][1:]][:MAX_REWEIGHED_FRAMES]
     return {parts[angle][0]: trial for angle, trial in trials.items()} | {
-        key: _trial(alike[key], observations) for key in others
+        key: _trial(alike[key].frame, observations) for key in others
     }
 
 
-def _trial(one: AlikeHypotheses, observations: Sequence[Observation]) -> FrameTrial:
-    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT."""
-    trial = FrameTrial(one.frame, observations)
-    trial.draw()
-    return trial
+def _trial(frame: Frame, observations: Sequence[Observation]) -> MapDescription:
+    """Return the map of some observations in a frame, with the prior of its orientation; nothing is drawn yet."""
+    return MapDescription(remap(frame, frame, observations, ()).occupancy, against=OBLIQUE_COST * (frame.angle != 0))
 
 
 class _Competition:
@@ -224,13 +213,13 @@ class _Competition:
     def __init__(self, frames: Mapping[int, Frame], observations: Sequence[Observation]) -> None:
         """Begin with no trial."""
         self._frames, self._observations = frames, observations
-        self._trials: dict[int, FrameTrial] = {}
+        self._trials: dict[int, MapDescription] = {}
 
-    def run(self) -> dict[int, FrameTrial]:
+    def run(self) -> dict[int, MapDescription]:
         """Return the trials of the frames that may be the best, by orientation; all of them were drawn."""
         trials = self._trials
         self._enter([0])
-        if 0 in trials and trials[0].draw() and trials[0].description.bend_ratio < MAX_STRAIGHT_BENDS:
+        if 0 in trials and trials[0].draw() and trials[0].bend_ratio < MAX_STRAIGHT_BENDS:
             self._frames = {angle: frame for angle, frame in self._frames.items() if abs(angle) <= STRAIGHT_ANGLES}
         self._enter([angle for angle in self._frames if angle % COARSE_ANGLE_STEP == 0] or self._frames)
         refined = self._leading(MAX_REFINED_ANGLES, MAX_REFINED_ODDS)
@@ -244,7 +233,7 @@ class _Competition:
         """Try some orientations (degrees) roughly; those without a frame and those tried before are skipped."""
         for angle in angles:
             if angle in self._frames and angle not in self._trials:
-                self._trials[angle] = FrameTrial(self._frames[angle], self._observations)
+                self._trials[angle] = _trial(self._frames[angle], self._observations)
                 self._trials[angle].draw(ROUGH_EFFORT)
 
     def _leading(self, most: int, behind: float) -> list[int]:
@@ -252,5 +241,5 @@ class _Competition:
         trials = self._trials
         ordered = sorted(trials, key=lambda angle: trials[angle].odds)[:most]
         best = trials[ordered[0]]
-        limit = best.odds + max(behind, ROUGH_COST_NOISE * best.description.price)
+        limit = best.odds + max(behind, ROUGH_COST_NOISE * best.price)
         return [angle for angle in ordered if trials[angle].odds <= limit]

@@ -6,18 +6,17 @@ another. In robotics this is called smoothing.
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from utak.geometry.motion.se2 import Translate
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
+from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,
     FrameHypothesis,
-    ObjectPose,
     Observation,
     Position,
     UnsettledDisc,
@@ -30,7 +29,6 @@ from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, Replay
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
     MotionHypothesis,
-    add,
     line_crossings,
     observation_places,
 )
@@ -42,70 +40,13 @@ MAX_REESTIMATED_HYPOTHESES = 90  # hypotheses in which one motion is re-estimate
 QUICK_CHECK_OBSERVATIONS = 3  # observations, about, that are compared before all: most contradictions show there
 
 
-class WalkCorrection(NamedTuple):
-    """A shift of all observations from one on, and of the objects that were seen or moved from there."""
-
-    since: int  # the number of the first observation that is shifted; the first of all has the number 0
-    shift: Position  # from the believed place to the corrected one, (east, north) in squares, Utak's own frame
-    # Objects that were first held since, by name, each with the shift of where it lies and lay, same frame and unit
-    seen: tuple[tuple[str, Position], ...] = ()
-    # The name of the object in hand on the motion that is corrected; None when there was none
-    in_hand: str | None = None
-
-    def place(self, place: Position) -> Position:
-        """Return a place of Utak since the motion as corrected, (east, north) in squares, Utak's own frame."""
-        return add(place, self.shift)
-
-    def observations(self, observations: Sequence[Observation]) -> list[Observation]:
-        """Return all observations, oldest first, with corrected places and object poses; earlier ones are unchanged."""
-        since = [
-            observation._replace(place=self.place(observation.place), moved=tuple(map(self._pose, observation.moved)))
-            for observation in observations[self.since :]
-        ]
-        return [*observations[: self.since], *since]
-
-    def held_objects(self, held_objects: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
-        """Return all held objects, by name, where they lie and lay as corrected; same frame and order as given."""
-        return {name: self._corrected_object(held, frame) for name, held in held_objects.items()}
-
-    def _pose(self, pose: ObjectPose) -> ObjectPose:
-        """Return the corrected pose of an object at an observation since the motion, Utak's own frame."""
-        aside = self._aside(pose.name)
-        if pose.name != self.in_hand:
-            pose = pose._replace(taken=add(pose.taken, aside))
-        return pose._replace(middle=add(pose.middle, aside))
-
-    def _corrected_object(self, held: HeldObject, frame: Frame) -> HeldObject:
-        """Return an object where it lies as corrected, map frame of `frame`; the same object when it is not shifted."""
-        aside = Translate(*frame.to_map(*self._aside(held.name)))
-        if not any(aside):
-            return held
-        first = held.first if held.name == self.in_hand else aside.carry(held.first)
-        return replace(held.lying(aside.carry(held.polygon), held.slack), first=first, seen_on=None)
-
-    def _aside(self, name: str) -> Position:
-        """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted."""
-        return self.shift if name == self.in_hand else dict(self.seen).get(name, (0.0, 0.0))
-
-
-class ReestimatedWalk(NamedTuple):
-    """A re-estimated motion: a frame, and the correction of a motion with which observations agree."""
-
-    hypothesis: FrameHypothesis  # of the frame
-    correction: WalkCorrection  # of all observations since that motion
-    contact_known: bool  # whether something known stands where the motion was blocked then
-    residual: int  # number of fields that contradict it, over all observations
-    # Where the newest observation was made then, (east, north) in squares, Utak's own frame
-    newest: Position = (0.0, 0.0)
-
-
 def reestimate_walk(
     motion: MotionHypothesis,
     believed: Frame,
     observations: Sequence[Observation],
     prefixes: Callable[[Frame], ReplayPrefixes] | None = None,
-) -> Iterator[ReestimatedWalk]:
-    """Yield other ends of a motion, each with the frame in which no observation contradicts another."""
+) -> Iterator[Explanation]:
+    """Yield other ends of a motion, each in a frame in which no observation contradicts another."""
     newest = motion.number == len(observations) - 1
     for hypothesis in _likeliest_hypotheses(motion.hypotheses):
         frame = hypothesis.frame
@@ -129,7 +70,7 @@ def _other_ends(
     hypothesis: FrameHypothesis,
     observations: Sequence[Observation],
     begun: ReplayPrefixes,
-) -> Iterator[ReestimatedWalk]:
+) -> Iterator[Explanation]:
     """Yield the other ends of one motion in one frame, with contacts known and unknown, in the order of the way."""
     frame, number = hypothesis.frame, motion.number
     believed, walk = observations[number].place, WalkInFrame(motion, frame, observations)
@@ -151,33 +92,23 @@ def _other_ends(
                 judged[key] = None
                 if _are_consistent(frame, squares, ranges):
                     *before, last = correction.observations(observations)
-                    judged[key] = remap(frame, frame, [*before, last._replace(place=place)], (), begun.first(number))
+                    all_there, first = [*before, last._replace(place=place)], begun.first(number)
+                    judged[key] = remap(frame, frame, all_there, (), first, only_whether=True)
             under = judged[key]
-            if under is not None and (ahead := walk.state_ahead(end, under.occupancy)) != FREE:
-                yield ReestimatedWalk(hypothesis, correction, ahead == OCCUPIED, under.residual, place)
-
-
-def reestimate_two_walks(
-    motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation]
-) -> Iterator[ReestimatedWalk]:
-    """Yield ends of an earlier motion and of the newest one, both blocked by what is known, without contradictions."""
-    frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
-    walk = WalkInFrame(motion, frame, observations)
-    against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
-    for end in walk.ends[:-1]:
-        correction = WalkCorrection(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
-        there = correction.observations(before)
-        so_far = remap_if_consistent(frame, there, recent=MAX_CHECKED_OBSERVATIONS, only_whether=False)
-        if so_far is None or walk.state_ahead(end, so_far.occupancy) == FREE:
-            continue
-        onward = WalkInFrame(newest, frame, [*there, observations[-1]])
-        still = [WalkEnd(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
-        for halt in (*still, *onward.ends[:-1]):
-            under = remap_if_consistent(frame, [*there, observations[-1]._replace(place=halt.place)])
-            if under is None or under.residual or walk.state_ahead(end, under.occupancy) != OCCUPIED:
+            if under is None or under.residual:
                 continue
-            if halt in still or onward.state_ahead(halt, under.occupancy) == OCCUPIED:
-                yield ReestimatedWalk(hypothesis, correction, True, 0, halt.place)
+            ahead = walk.state_ahead(end, under.occupancy)
+            if ahead != FREE:
+                yield _misled(hypothesis, correction, place, ahead == OCCUPIED)
+
+
+def _misled(
+    hypothesis: FrameHypothesis, correction: WalkCorrection, newest: Position, contact_known: bool
+) -> Explanation:
+    """Return the explanation by another end of a motion. newest : of the observations, Utak's own frame."""
+    place, far = hypothesis.frame.place_from_utak(*newest), math.hypot(*correction.shift)
+    misled = Explanation("misled", place, hypothesis.frame, 0, far, None, (hypothesis,), correction)
+    return misled._replace(contact_known=contact_known, prior_cost=hypothesis.prior_cost)
 
 
 def remap_if_consistent(
@@ -185,15 +116,13 @@ def remap_if_consistent(
     observations: Sequence[Observation],
     held_objects: Iterable[HeldObject] = (),
     unsettled: Sequence[UnsettledDisc] = (),
-    recent: int = MAX_CHECKED_OBSERVATIONS + 1,
     begun: MapReplay | None = None,
-    only_whether: bool = True,
 ) -> RemappedMap | None:
     """Return the map of all observations in a frame; None when two of the last observations contradict each other."""
     squares = observation_squares(frame, observations)
-    if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
+    if not _are_consistent(frame, squares, stack_ranges(observations), unsettled):
         return None
-    return remap(frame, frame, observations, held_objects, begun, only_whether)
+    return remap(frame, frame, observations, held_objects, begun, only_whether=True)
 
 
 def _are_consistent(
@@ -201,10 +130,9 @@ def _are_consistent(
     squares: NDArray[np.int64],
     ranges: NDArray[np.int16],
     unsettled: Sequence[UnsettledDisc] = (),
-    recent: int = MAX_CHECKED_OBSERVATIONS + 1,
 ) -> bool:
     """Return whether none of the last observations contradicts another."""
-    squares, ranges = squares[-recent:], ranges[-recent:]
+    squares, ranges = squares[-MAX_CHECKED_OBSERVATIONS - 1 :], ranges[-MAX_CHECKED_OBSERVATIONS - 1 :]
     apart = len(squares) // QUICK_CHECK_OBSERVATIONS
     if apart > 1 and count_contradictions_at(frame, squares[::-apart], ranges[::-apart], unsettled):  # with the newest
         return False

@@ -37,10 +37,9 @@ class RemappedMap(NamedTuple):
     occupancy: OccupancyMap  # the map
     # All held objects as they lie after the last observation, by name, map frame
     held_objects: Mapping[str, HeldObject]
-    residual: int  # number of fields that contradict the frame, over all observations
-    # Whether the replay stopped at the first contradiction. Then `held_objects` is empty and `residual` is a lower
-    # bound above 0.
-    incomplete: bool = False
+    # Number of fields that contradict the frame, over all observations; where the replay stopped at the first of them
+    # `held_objects` is empty
+    residual: int
 
 
 def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
@@ -103,7 +102,7 @@ class MapReplay:
         """Integrate the rest of the observations and return the map. The replay cannot go on afterwards."""
         self.advance(observations, held_objects, len(observations), only_whether)
         if only_whether and self._residual:
-            return RemappedMap(self._occupancy, {}, self._residual, incomplete=True)
+            return RemappedMap(self._occupancy, {}, self._residual)
         self._take([held for held in held_objects.values() if held.since >= len(observations)], len(observations))
         now = {
             name: _moved_to(self._taken[name], held, object_pose(held, self.old), self.new)
@@ -134,7 +133,7 @@ def remap(
 
 
 class RemapCache:
-    """The maps of all frames that were asked for."""
+    """The maps of all frames that were asked for; each ends at its first contradiction, if it has any."""
 
     def __init__(
         self,
@@ -146,32 +145,26 @@ class RemapCache:
         """Begin with the map of the believed frame, which is taken to be free of contradictions."""
         self._frame, self._observations, self._held_objects = frame, observations, held_objects
         believed = RemappedMap(occupancy, held_objects, 0)
-        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {
-            _map_key(frame, observations): (None, believed)
-        }
+        self._known = {_map_key(frame, observations): (frame, believed)}
         self._by_frame: dict[Frame, RemappedMap] = {}
 
-    def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
+    def remapped(self, frame: Frame) -> RemappedMap:
         """Return the map and the held objects in a frame; the map must not be changed, for it is kept."""
-        if frame not in self._by_frame or (self._by_frame[frame].incomplete and not only_whether):
-            self._by_frame[frame] = self._found(frame, only_whether)
+        if frame not in self._by_frame:
+            self._by_frame[frame] = self._found(frame)
         return self._by_frame[frame]
 
-    def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
+    def _found(self, frame: Frame) -> RemappedMap:
         """Return the map of a frame, and the held objects in it, replayed or shifted from one of the same squares."""
-        key = _map_key(frame, self._observations)
-        if key not in self._known or (self._known[key][1].incomplete and not only_whether):
-            found = remap(
-                frame, self._frame, self._observations, self._held_objects.values(), only_whether=only_whether
-            )
-            self._known[key] = frame, found
-        first, under = self._known[key]
-        if frame == first or under.incomplete:
+        key, held_objects = _map_key(frame, self._observations), self._held_objects.values()
+        if key not in self._known:
+            under = remap(frame, self._frame, self._observations, held_objects, only_whether=True)
+            self._known[key] = frame, under
             return under
-        held_objects = {
-            name: shift_object(held, frame, first or self._frame) for name, held in under.held_objects.items()
-        }
-        return under._replace(held_objects=held_objects)
+        first, under = self._known[key]
+        # The objects were first held where they were believed to lie, but every turn since was about another point
+        there = {name: object_at(held, object_pose(held, first), frame) for name, held in under.held_objects.items()}
+        return under._replace(held_objects=there)
 
 
 def _map_key(frame: Frame, observations: Sequence[Observation]) -> tuple[int, bytes]:
@@ -209,12 +202,6 @@ class ReplayPrefixes:
             self._known[stop] = replay.advance(self._observations, self._held_objects, stop).copy()
         self._alike[key] = self._known[number]
         return self._known[number]
-
-
-def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
-    """Return a held object for another origin of the frame with which every observation falls on the same squares."""
-    # The object was first held where it was believed to lie, but every turn since was about another point.
-    return _moved_to(held, held, object_pose(held, old), new)
 
 
 def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:

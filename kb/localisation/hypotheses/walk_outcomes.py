@@ -40,7 +40,6 @@ class MotionHypothesis(NamedTuple):
     number: int  # of the observation after it; the first observation has the number 0
     shift: Position  # the commanded motion, (east, north) in squares, Utak's own frame
     hypotheses: tuple[FrameHypothesis, ...]  # the frame hypotheses before that observation
-    blocked: bool = False  # whether it is believed to have been blocked
     in_hand: str | None = None  # the name of the object in hand; None when there was none
     # Other ends that agree with that observation, (east, north) in squares, Utak's own frame, each with its probability
     # after the observation

@@ -1,4 +1,4 @@
-"""Proposals that the newest motion was blocked: every place where something may have stopped it, with its chance.
+"""Proposals of where the newest motion ended: at its end, or where something may have stopped it, with its chance.
 
 Utak moves, and pushes objects, up to what may be a wall. The observation after it often agrees with several ends: one
 square further on, with the wall one square further on, too; and a robot stopped on a grid line may see what it would
@@ -7,109 +7,167 @@ then, and something stands ahead of it. Walls that were seen twice are straight,
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple, TypeVar
+from collections.abc import Iterable
 
-from utak.geometry.motion.se2 import Motion, Translate
-from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome, partial_outcome, predicted_outcome
-from utak.kb.localisation.hypotheses.contacts import NO_SQUARES, ContactHypothesis
+from utak.geometry.motion.se2 import Translate
+from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, partial_outcome, predicted_outcome
+from utak.kb.localisation.hypotheses.contacts import (
+    NO_SQUARES,
+)
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
-from utak.kb.localisation.hypotheses.walk_outcomes import line_crossings, observation_places
-from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.localisation.hypotheses.walk_outcomes import (
+    blocked_ends,
+    entered_square,
+    line_crossings,
+    observation_places,
+    slipped_ends,
+)
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, explained_by, residual_at
+from utak.kb.localisation.propose.contradicted_motion import overlooked_contact
 from utak.kb.mapping.obstacle_chance import ObstacleChance
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
-from utak.kb.objects.held_object import HeldObject, Square
 
-NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
 MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considered; tuned
 MAX_ENDS = 24  # ends that are considered: bounds the time of one explanation; tuned
+NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
 
 
-EndOrContact = TypeVar("EndOrContact", "BlockedMotion", ContactHypothesis)
+def propose(situation: ObservedSituation) -> list[Explanation]:
+    """Return the explanation that the motion went as commanded, or where it may have ended, as far as that fits."""
+    whole, ends = _whole_motion(situation), consistent_explanations(situation, possible_ends(situation))
+    went = any(one.how == "predicted" for one in ends)
+    fits = not whole.residual and (went or not ends)
+    if fits and not situation.state.held_objects:
+        if situation.stands:
+            return _weighed(situation, ends or [whole])
+        fits = situation.another is None
+    if went and (fits or situation.carries):
+        return ends
+    if fits:
+        contact = overlooked_contact(situation) if situation.carries else None
+        return [whole if contact is None else explained_by(situation, contact)]
+    # Where no settled square contradicts it, two observations contradict each other
+    return [whole._replace(contradicted=not whole.residual), *(one for one in ends if one.how == "blocked")]
 
 
-class BlockedMotion(NamedTuple):
-    """A possible end of a motion."""
-
-    how: str  # predicted for the end of the whole motion, else blocked
-    place: Position  # from which the observation is made then, (x, y) in squares, map frame
-    chance: float  # its probability before the observation, 0 to 1
-    # The open squares (settled neither as free nor as occupied) one of which blocked it, (column, row) of the map
-    # frame; empty where something known did, or nothing
-    contact_squares: frozenset[Square] = NO_SQUARES
-    outcome: CarryOutcome | None = None  # of the motion of the object in hand; None when there is none
+def _weighed(situation: ObservedSituation, ends: list[Explanation]) -> list[Explanation]:
+    """Return ends of a walk with the prior cost of the believed frame, and with the frame hypotheses that are left."""
+    cost = next(h.prior_cost for h in situation.left if h.contains(situation.state.frame))
+    return [one._replace(prior_cost=one.prior_cost + cost, hypotheses=situation.left) for one in ends]
 
 
-def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
+def propose_other_ends(situation: ObservedSituation) -> list[Explanation]:
+    """Return the explanations that the newest motion ended anywhere on its way, or beside its end."""
+    known, start, whole = any(one.is_end for one in situation.found), situation.state.place, situation.found[0].place
+    if situation.carries:
+        polygon, motion = situation.held.polygon, situation.motion
+        contacts = [] if known else situation.contact_ends
+        met = [one for one in (explained_by(situation, end) for end in contacts) if not one.residual]
+        return met + [explained_by(situation, other) for other in other_outcomes(start, polygon, motion)]
+    ends = () if known or not situation.walked else blocked_ends(start, situation.shift)
+    blocked = [_blocked(situation, place, whole) for place in ends]
+    return blocked + [_walked(situation, "slipped", place, whole) for place in slipped_ends(whole)]
+
+
+def _whole_motion(situation: ObservedSituation) -> Explanation:
+    """Return the explanation that the motion went as commanded."""
+    if situation.carries:
+        end = predicted_outcome(situation.state.place, situation.held.polygon, situation.motion)
+        return explained_by(situation, end)
+    near = situation.state.places_near(situation.ahead)
+    return min(
+        (_walked(situation, "predicted", place, situation.ahead) for place in near), key=lambda one: one.residual
+    )
+
+
+def _blocked(situation: ObservedSituation, place: Position, whole: Position) -> Explanation:
+    """Return the explanation that a walk was blocked at `place`, contradicted where floor is settled ahead."""
+    occupancy, entered = situation.state.occupancy, entered_square(place, situation.ahead)
+    barred = entered is not None and occupancy.state[occupancy.index(*entered)] != FREE
+    return _walked(situation, "blocked", place, whole)._replace(contradicted=not barred)
+
+
+def _walked(situation: ObservedSituation, how: str, place: Position, whole: Position) -> Explanation:
+    """Return the explanation that the observation was made at `place`, in the believed frame."""
+    return Explanation(how, place, situation.state.frame, residual_at(situation, place), math.dist(place, whole))
+
+
+def possible_ends(situation: ObservedSituation) -> list[Explanation]:
     """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first."""
-    # At a grid line each end is returned once for each side, for the observation may be made from either.
-    if not isinstance(motion, Translate):
+    # At a grid line each end is returned once for each side, for the observation may be made from either. How far the
+    # observation contradicts them is not looked at.
+    if not isinstance(situation.motion, Translate) or not (situation.walked or situation.carries):
         return []
-    contacts = _walk_contacts(surprise, motion) if held is None else _push_contacts(surprise, held, motion)
-    x, y = surprise.place
-    end = None if held is None else predicted_outcome(surprise.place, held.polygon, motion)
-    chance = 1.0 - sum(contact.chance for contact in contacts)
-    whole = _both_sides(BlockedMotion("predicted", (x + motion.dx, y + motion.dy), chance, outcome=end))
-    if len(whole) == 1 and whole[0].chance >= 1.0 - NEGLIGIBLE_CONTACT_CHANCE:
+    whole = _whole_motion(situation)._replace(place=situation.ahead)
+    contacts = _push_contacts(situation) if situation.carries else _walk_contacts(situation)
+    chance = 1.0 - sum(map(_chance, contacts))
+    ends = _both_sides(whole._replace(chance=chance))
+    if len(ends) == 1 and chance >= 1.0 - NEGLIGIBLE_CONTACT_CHANCE:
         return []
-    return [*whole, *likeliest_ends(contacts)]
+    first = ends[0].place
+    far = [one if one.outcome else one._replace(distance=math.dist(one.place, first)) for one in contacts]
+    likely = sorted((one for one in far if _chance(one) > MIN_END_CHANCE), key=lambda one: -_chance(one))
+    return [*ends, *likely[:MAX_ENDS]]
 
 
-def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
-    """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most."""
-    return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
+def _chance(end: Explanation) -> float:
+    return 0.0 if end.chance is None else end.chance
 
 
-def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
+def _both_sides(end: Explanation) -> list[Explanation]:
     """Return an end once for each place from which the observation may be made there, its chance divided evenly."""
-    found = observation_places(end.place)
+    found, chance = observation_places(end.place), _chance(end)
     outcomes = (end.outcome and end.outcome._replace(place=view) for view in found)
     return [
-        end._replace(place=view, chance=end.chance / len(found), outcome=outcome)
+        end._replace(place=view, chance=chance / len(found), outcome=outcome)
         for view, outcome in zip(found, outcomes, strict=True)
     ]
 
 
-def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
+def _walk_contacts(situation: ObservedSituation) -> list[Explanation]:
     """Return the ends of a walk at each grid line that it crosses, in order, once for each side of the line."""
-    way, occupancy = line_crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
-    chances = ObstacleChance(occupancy, surprise.pictures).met([[crossing.entered] for crossing in way])
+    state = situation.state
+    way, occupancy = line_crossings(state.place, situation.shift), state.occupancy
+    chances = ObstacleChance(occupancy, state.completions).met([[crossing.entered] for crossing in way])
     found = []
     for crossing, chance in zip(way, chances, strict=True):
         open_ = occupancy.state[occupancy.index(*crossing.entered)] == OPEN
-        squares = frozenset([crossing.entered]) if open_ else NO_SQUARES
-        found += [BlockedMotion("blocked", view, chance / 2, squares) for view in (crossing.after, crossing.before)]
+        end = Explanation("blocked", crossing.after, state.frame, 0, 0.0, chance=chance / 2)
+        end = end._replace(contact_squares=frozenset([crossing.entered]) if open_ else NO_SQUARES)
+        found += [end, end._replace(place=crossing.before)]
     return found
 
 
-def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> list[BlockedMotion]:
+def _push_contacts(situation: ObservedSituation) -> list[Explanation]:
     """Return the ends of a push at each contact of Utak or of the object, in the order of the way."""
-    place, polygon = surprise.place, held.polygon
+    state, polygon, motion = situation.state, situation.held.polygon, situation.motion
     found = []
-    for contact in surprise.obstructions.contacts(place, polygon, motion):
-        end = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
-        found += _both_sides(BlockedMotion("blocked", end.place, contact.chance, contact.squares, end))
+    for contact in situation.contacts:
+        end = partial_outcome(state.place, polygon, motion, contact.fraction, contact.squares)
+        one = Explanation("blocked", end.place, state.frame, 0, end.distance, end, chance=contact.chance)
+        found += _both_sides(one._replace(contact_squares=contact.squares))
     return found
 
 
-def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanation]) -> list[Explanation]:
+def consistent_explanations(situation: ObservedSituation, explanations: Iterable[Explanation]) -> list[Explanation]:
     """Return those explanations with which the observation agrees, each with its cost by the map prior."""
+    state = situation.state
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}
     for one in explanations:
-        held_objects = (
-            list(surprise.held_objects.values()) if one.outcome is None else surprise.objects_after(one.outcome)
-        )
-        after = surprise.map_after(held_objects, one.place)
+        if residual_at(situation, one.place, one.outcome):
+            continue
+        held_objects = situation.objects_after(one.outcome)
+        after = situation.map_after(held_objects, one.place)
         if _settle_contact(after, one) and not count_clashes(
-            surprise.frame, after, held_objects, one.place, surprise.ranges
+            state.frame, after, held_objects, one.place, situation.ranges
         ):
-            found.append((MapDescription(after, drawn), one))
-    chances = (max(one.chance or 0.0, MIN_END_CHANCE) for _, one in found)
-    costs = relative_costs([(description, -math.log(p)) for (description, _), p in zip(found, chances, strict=True)])
-    return [one._replace(prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
+            against = -math.log(max(_chance(one), MIN_END_CHANCE))
+            found.append((MapDescription(after, drawn, against), one))
+    costs = relative_costs([description for description, _ in found])
+    return [one._replace(residual=0, prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
 
 
 def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
@@ -128,8 +186,3 @@ def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
     if occupancy.state[here] == OPEN:
         occupancy.state[here] = state
     return bool(occupancy.state[here] == state)
-
-
-def has_whole_way(explanations: Sequence[Explanation]) -> bool:
-    """Return whether one of the explanations is that the motion went its whole way (kind predicted)."""
-    return any(explanation.how == "predicted" for explanation in explanations)

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from utak.geometry.motion.se2 import Motion, Rotate
+from utak.geometry.motion.se2 import Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, other_outcomes, predicted_outcome
 from utak.kb.localisation.hypotheses.frames import Position
-from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, residual_at
 from utak.kb.mapping.occupancy import OCCUPIED
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import GRID_CORNER_TOLERANCE, HeldObject
@@ -21,45 +21,38 @@ MIN_CROWDED_SQUARES = 4  # newly occupied squares right beside a turned object f
 CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: its neighbours
 
 
-def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
+def overlooked_contact(situation: ObservedSituation) -> CarryOutcome | None:
     """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None."""
-    if is_contradicted(surprise, predicted_outcome(surprise.place, held.polygon, motion)):
-        return likeliest_contact(surprise, held, motion)
-    return shortened_turn(surprise, held, motion) if isinstance(motion, Rotate) else None
+    whole = predicted_outcome(situation.state.place, situation.held.polygon, situation.motion)
+    if _is_contradicted(situation, whole):
+        fitting = (end for end in situation.contact_ends if not residual_at(situation, end.place, end))
+        return next((end for end in fitting if not _is_contradicted(situation, end)), None)
+    return shortened_turn(situation) if isinstance(situation.motion, Rotate) else None
 
 
-def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
+def _is_contradicted(situation: ObservedSituation, outcome: CarryOutcome) -> bool:
     """Return whether what the observation settles, with all earlier ones, contradicts the observation itself."""
-    held_objects = surprise.objects_after(outcome)
-    occupancy = surprise.map_after(held_objects, outcome.place)
-    return count_clashes(surprise.frame, occupancy, held_objects, outcome.place, surprise.ranges) > 0
+    held_objects = situation.objects_after(outcome)
+    occupancy = situation.map_after(held_objects, outcome.place)
+    return count_clashes(situation.state.frame, occupancy, held_objects, outcome.place, situation.ranges) > 0
 
 
-def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
-    """Return the outcome of the likeliest contact that nothing contradicts; None when there is none."""
-    for end in surprise.obstructions.outcomes(surprise.place, held.polygon, motion):
-        there = surprise.objects_after(end)
-        fits = not count_clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
-        if fits and not is_contradicted(surprise, end):
-            return end
-    return None
-
-
-def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> CarryOutcome | None:
+def shortened_turn(situation: ObservedSituation) -> CarryOutcome | None:
     """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None."""
-    place, polygon = surprise.place, held.polygon
-    others = surprise.others(held)
-    whole = _turned(held, motion.carry(polygon), held.slack, motion.degrees)
-    crowded = _count_crowded(surprise, whole, others, place)
+    assert isinstance(situation.motion, Rotate)
+    state, held, motion = situation.state, situation.held, situation.motion
+    place, others = state.place, state.others(held)
+    whole = _turned(held, motion.carry(held.polygon), held.slack, motion.degrees)
+    crowded = _count_crowded(situation, whole, others, place)
     if crowded < MIN_CROWDED_SQUARES:
         return None
-    ends = [*surprise.obstructions.outcomes(place, polygon, motion)]
-    ends += [end for end in other_outcomes(place, polygon, motion) if end.how == "blocked"]
+    ends = situation.contact_ends
+    ends += [end for end in other_outcomes(place, held.polygon, motion) if end.how == "blocked"]
     possible: list[tuple[int, float, CarryOutcome]] = []
     for end in ends:
         there = _turned(held, end.polygon, END_SPACING, end.degrees)
-        if not count_clashes(surprise.frame, surprise.occupancy, [*others, there], place, surprise.ranges):
-            possible.append((_count_crowded(surprise, there, others, place), end.degrees, end))
+        if not count_clashes(state.frame, state.occupancy, [*others, there], place, situation.ranges):
+            possible.append((_count_crowded(situation, there, others, place), end.degrees, end))
     fewest = min((many for many, *_ in possible), default=crowded)
     fitting = sorted((one for one in possible if one[0] == fewest), key=lambda one: one[1])
     return fitting[len(fitting) // 2][2] if 2 * fewest < crowded else None
@@ -74,9 +67,11 @@ def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
     return moved if whole else replace(moved, astray=held.astray * after / before)
 
 
-def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
+def _count_crowded(
+    situation: ObservedSituation, held: HeldObject, others: Sequence[HeldObject], place: Position
+) -> int:
     """Return how many squares right beside an object are occupied by the newest observation alone."""
-    before, after = surprise.occupancy, surprise.map_after([*others, held], place)
+    before, after = situation.state.occupancy, situation.map_after([*others, held], place)
     about = patch_of_polygon(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != OCCUPIED]
     return sum(after.state[after.index(*square)] == OCCUPIED for square in new)

@@ -4,33 +4,26 @@ Everything seen since then, and every object first held since then, lies elsewhe
 again with the correction, for what blocked the one may have blocked the other, seen where it really is.
 """
 
-import itertools
 import math
-from collections.abc import Iterator, Sequence, Set
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Sequence, Set
 
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obstructions, square_polygon
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
+from utak.kb.localisation.hypotheses.explanation import Explanation, likeliest_first
 from utak.kb.localisation.hypotheses.frames import (
-    Observation,
+    PLAUSIBLE_COST,
     Position,
-    any_origin,
-    consistent_hypotheses,
-    exact_hypothesis,
-    frames_to_try,
     observation_squares,
 )
 from utak.kb.localisation.hypotheses.recognition import places_within
 from utak.kb.localisation.hypotheses.reestimation import (
-    ReestimatedWalk,
-    WalkCorrection,
     WalkEnd,
     WalkInFrame,
     remap_if_consistent,
 )
-from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, object_at, remap
+from utak.kb.localisation.hypotheses.remap import object_at, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
     MotionHypothesis,
@@ -38,228 +31,209 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     observation_places,
     slipped_ends,
 )
-from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf, count_clashes
+from utak.kb.localisation.known.situation import ObservedSituation, is_simple, residual_at, with_chance
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
-from utak.kb.perception.frame import Frame
-
-MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with the origin: bounds the time; tuned
-MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bounds the time; tuned
 
 
-class ReestimatedMotion(NamedTuple):
-    """A re-estimated earlier motion, and the evaluation of everything else with it."""
+def reestimate_motions(situation: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
+    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame."""
+    tried = [motion for motion in reversed(motions) if _has_known_pose(motion, situation)]
+    found = (with_chance(situation.state, one) for motion in tried for one in _other_ends(situation, motion))
+    return sorted(found, key=lambda one: not one.contact_known)
 
-    walk: ReestimatedWalk  # the correction of the earlier motion
-    what_if: WhatIf  # the evaluation of the newest observation with it
+
+def propose(situation: ObservedSituation) -> list[Explanation]:
+    """Return the explanations by which an earlier motion ended elsewhere than believed."""
+    if not situation.state.held_objects:
+        return _earlier_walks(situation) if situation.walked else []
+    found = reestimate_motions(situation, motions_in_question(situation))
+    return [one for one in found if one.chance is not None or not _simple_here(situation)]
+
+
+def motions_in_question(situation: ObservedSituation) -> tuple[MotionHypothesis, ...]:
+    """Return the earlier motions that may have ended elsewhere, once objects were moved, oldest first."""
+    state, here = situation.state, _simple_here(situation)
+    if not here:
+        return state.earlier
+    return () if any(one.chance is not None for one in here) else state.doubtful
+
+
+def _simple_here(situation: ObservedSituation) -> list[Explanation]:
+    """Return the simple explanations in the believed frame."""
+    state = situation.state
+    return [one for one in situation.found if is_simple(state, one) and one.frame == state.frame]
+
+
+def propose_slips(situation: ObservedSituation) -> list[Explanation]:
+    """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
+    motions = reversed(situation.state.earlier)
+    tried = (motion for motion in motions if _has_known_pose(motion, situation))
+    return [one for motion in tried for one in _slips(situation, motion)]
+
+
+def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
+    """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
+    state, frames = situation.state, [one for one in situation.found if one.remaps and not one.unexplained]
+    turned = any(one.prior_cost <= PLAUSIBLE_COST for one in frames)
+    simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
+    if not turned:
+        return _blocked_elsewhere(situation, state.earlier if simple else state.reestimable)
+    found = _blocked_elsewhere(situation, state.reestimable)
+    odd = not state.off_middle and all(one.is_odd for one in frames)
+    return [one for one in found if (one.contact_known or one.chance) and (odd or one.frame == state.frame)]
+
+
+def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHypothesis]) -> list[Explanation]:
+    """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed."""
+    state = situation.state
+    judged = len(state.observations) if any(one.is_end for one in situation.found) else None
+    found = likeliest_first([one for motion in motions for one in situation.other_ends(motion)])
+    others = [(one, one.correction) for one in found if one.correction is not None]
+    return [with_chance(state, one) for one, other in others if other.since != judged or one.frame != state.frame]
 
 
 class CarriedMotion:
     """An earlier straight motion with an object in hand, in the believed frame."""
 
-    def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
+    def __init__(self, motion: MotionHypothesis, situation: ObservedSituation) -> None:
         """Find the ends of a motion with an object in hand."""
         assert motion.in_hand is not None
-        frame, observations, held_objects = (
-            surprise.frame,
-            surprise.observations[: motion.number],
-            surprise.held_objects,
-        )
+        state = situation.state
+        frame, observations = state.frame, state.observations[: motion.number]
         pose = next(pose for pose in observations[-1].moved if pose.name == motion.in_hand)
-        self._place = frame.place_from_utak(*observations[-1].place)
-        self._polygon = object_at(held_objects[motion.in_hand], pose, frame).polygon
-        self._motion = Translate(*frame.to_map(*motion.shift))
-        before = remap(
-            frame, frame, observations, held_objects.values(), surprise.prefixes.first(motion.number)
-        ).occupancy
-        contacts = self._obstructions(before).contacts(self._place, self._polygon, self._motion)
+        place, way = frame.place_from_utak(*observations[-1].place), Translate(*frame.to_map(*motion.shift))
+        self._way = place, object_at(state.held_objects[motion.in_hand], pose, frame).polygon, way
+        first = situation.prefixes.first(motion.number)
+        before = remap(frame, frame, observations, state.held_objects.values(), first)
+        contacts = Obstructions(before.occupancy, *self._way).contacts(*self._way)
         likely = (contact.fraction for contact in sorted(contacts, key=lambda contact: -contact.chance))
-        fractions = dict.fromkeys((*likely, 1.0))
-        halts = [(part, view) for part in fractions for view in observation_places(self._place_after(part))]
+        places = {part: add(place, way.part(part)) for part in (*likely, 1.0)}
+        halts = [(part, view) for part, there in places.items() for view in observation_places(there)]
         self.ends = tuple(WalkEnd(frame.place_to_utak(*view), part) for part, view in halts)
-
-    def _place_after(self, fraction: float) -> Position:
-        """Return Utak's place after a fraction (0 to 1) of the motion, (x, y) in squares, map frame."""
-        return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
         """Return the state of what blocked the motion at `end`."""
         # OCCUPIED for something known, OPEN or FREE (1, -1, 0).
         # FREE if something known would have blocked it before, or if nothing can be met there;
-        body, obstructions = ContactBody(self._polygon, [self._place]), self._obstructions(occupancy)
-        known = obstructions.known.first_contact(body, self._motion)
+        (place, polygon, way), obstructions = self._way, Obstructions(occupancy, *self._way)
+        body = ContactBody(polygon, [place])
+        known = obstructions.known.first_contact(body, way)
         if things:
             stood = Obstacles([square_polygon(square) for square in things])
-            known = min(known, stood.first_contact(body, self._motion))
+            known = min(known, stood.first_contact(body, way))
         if known < end.progress - SAME_CONTACT_FRACTION:
             return FREE
         if known < 1.0 and known < end.progress + SAME_CONTACT_FRACTION:
             return OCCUPIED
-        contacts = obstructions.contacts(self._place, self._polygon, self._motion)
+        contacts = obstructions.contacts(*self._way)
         met = (abs(contact.fraction - end.progress) < SAME_CONTACT_FRACTION for contact in contacts)
         return OPEN if end.progress == 1.0 or any(met) else FREE
 
-    def _obstructions(self, occupancy: OccupancyMap) -> Obstructions:
-        """Return the obstacles about the motion in a map: occupied squares (`known`) and open ones, map frame."""
-        return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
-
-def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame."""
-    tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
-    found = [one for motion in tried for one in _other_ends(surprise, motion)]
-    return sorted(found, key=lambda one: not one.walk.contact_known)
-
-
-def reestimate_slips(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
-    tried = (motion for motion in reversed(motions) if _has_known_pose(motion, surprise))
-    return [one for motion in tried for one in _slips(surprise, motion)]
-
-
-def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """Return other ends, with another frame origin, of the newest carrying motion that explains everything so."""
-    # Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
-    # squares; where the observations since were made depends on the origin.
-    tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
-    found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
-    return sorted(next(filter(None, found), []), key=lambda one: not one.walk.contact_known)
-
-
-def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
+def _has_known_pose(motion: MotionHypothesis, situation: ObservedSituation) -> bool:
     """Return whether the pose of the object in hand before a motion is known; True for an empty hand."""
-    before = surprise.observations[motion.number - 1].moved
+    before = situation.state.observations[motion.number - 1].moved
     return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
 
 
-def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+def _other_ends(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
-    observations, frame = surprise.observations, surprise.frame
-    believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
-    if first.contradicted:  # whatever came of the motion
+    state, believed = situation.state, situation.state.observations[motion.number].place
+    if situation.prefixes.first(motion.number).contradicted:  # whatever came of the motion
         return
-    way = WalkInFrame(motion, frame, observations) if motion.in_hand is None else CarriedMotion(motion, surprise)
-    judged: dict[Position, RemappedMap | None] = {}  # by the shift
-    for end in way.ends:
-        shift = end.place[0] - believed[0], end.place[1] - believed[1]
-        if math.hypot(*shift) < LINE_DISTANCE:  # as believed
-            continue
-        corrected, correction = _corrected(surprise, motion, end)
-        if shift not in judged:
-            judged[shift] = _consistent_map(corrected, first)
-        under = judged[shift]
-        if under is None:
-            continue
-        ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.observations, motion, frame))
+    alone = motion.in_hand is None
+    way = WalkInFrame(motion, state.frame, state.observations) if alone else CarriedMotion(motion, situation)
+    others = (end for end in way.ends if math.dist(end.place, believed) >= LINE_DISTANCE)
+    for end, supposed, correction in _consistent(situation, motion, others):
+        ahead = way.state_ahead(end, supposed.state.occupancy, _moved_since(supposed.state, motion))
         if ahead == FREE:
             continue
-        supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
-        what_if = supposed.evaluate_frame(frame, surprise.hypotheses, only_whether=True)
-        if not what_if.residual:
-            walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
-            yield ReestimatedMotion(walk, what_if)
+        newest = supposed.by_frame(state.frame, state.hypotheses)
+        if newest is not None:
+            yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
-def _consistent_map(corrected: Surprise, begun: MapReplay) -> RemappedMap | None:
-    """Return the map of all corrected observations, in the believed frame; None where one contradicts the others."""
-    held_objects = corrected.held_objects.values()
-    under = remap_if_consistent(
-        corrected.frame, corrected.observations, held_objects, corrected.unsettled_discs, begun=begun
-    )
-    return None if under is None or under.residual else under
-
-
-def _slips(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+def _slips(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
     """Yield ends whole squares beside the commanded end of one motion, with which no observation is contradicted."""
-    frame, first = surprise.frame, surprise.prefixes.first(motion.number)
-    if first.contradicted:  # whatever came of the motion
+    frame = situation.state.frame
+    if situation.prefixes.first(motion.number).contradicted:  # whatever came of the motion
         return
-    end = add(surprise.observations[motion.number - 1].place, motion.shift)
-    for place in slipped_ends(frame.place_from_utak(*end)):
-        corrected, correction = _corrected(surprise, motion, WalkEnd(frame.place_to_utak(*place), 1))
-        under = _consistent_map(corrected, first)
-        if under is None:
-            continue
-        supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
-        for what_if in _newest_after_slip(supposed):
-            if not what_if.residual:
-                yield ReestimatedMotion(ReestimatedWalk(exact_hypothesis(frame), correction, False, 0), what_if)
-                break
+    end = add(situation.state.observations[motion.number - 1].place, motion.shift)
+    there = (WalkEnd(frame.place_to_utak(*place), 1) for place in slipped_ends(frame.place_from_utak(*end)))
+    for _, supposed, correction in _consistent(situation, motion, there):
+        newest = _newest_after_slip(supposed)
+        if newest is not None:
+            yield _earlier("slipped", newest, correction, contact_known=False)
 
 
-def _newest_after_slip(supposed: Surprise) -> Iterator[WhatIf]:
-    """Yield what contradicts the newest observation after a slip, the likeliest place first."""
-    frame, held_objects = supposed.frame, supposed.held_objects.values()
-    if supposed.carried is not None:
-        yield supposed.evaluate_frame(frame, supposed.hypotheses, only_whether=True)
-        return
+def _consistent(
+    situation: ObservedSituation, motion: MotionHypothesis, ends: Iterable[WalkEnd]
+) -> Iterator[tuple[WalkEnd, ObservedSituation, WalkCorrection]]:
+    """Yield the ends of an earlier motion with which no earlier observation is contradicted, and the situation then."""
+    frame, first = situation.state.frame, situation.prefixes.first(motion.number)
+    for end in ends:
+        corrected, correction = _corrected(situation, motion, end)
+        there, held_objects = corrected.state.observations, corrected.state.held_objects.values()
+        under = remap_if_consistent(frame, there, held_objects, corrected.unsettled_discs, begun=first)
+        if under is not None and not under.residual:
+            yield end, corrected.supposing(occupancy=under.occupancy, held_objects=under.held_objects), correction
+
+
+def _newest_after_slip(supposed: ObservedSituation) -> Explanation | None:
+    """Return where the newest observation was made after a slip, the likeliest place; None where none fits."""
+    state, frame = supposed.state, supposed.state.frame
+    if supposed.carries:
+        return supposed.by_frame(frame, state.hypotheses)
     # Where in its square the robot was after the slip is not known.
-    for place in places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5)):
-        clashes = count_clashes(frame, supposed.occupancy, held_objects, place, supposed.ranges)
-        yield WhatIf(frame, supposed.hypotheses, place, None, clashes, searched=False)
+    near = places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5))
+    place = next((place for place in near if not residual_at(supposed, place)), None)
+    return None if place is None else Explanation("slipped", place, frame, 0, 0.0, None, state.hypotheses)
 
 
-def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
-    origins = any_origin((surprise.frame.angle,))
-    for end in CarriedMotion(motion, surprise).ends:
-        corrected, correction = _corrected(surprise, motion, end)
-        left = consistent_hypotheses(corrected.judging_observations, origins, corrected.unsettled_discs)
-        if not left:
-            continue
-        first = surprise.prefixes.first(motion.number)
-        under = remap(surprise.frame, surprise.frame, corrected.observations, corrected.held_objects.values(), first)
-        corrected = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
-        for frame in frames_to_try(left, surprise.frame)[:MAX_FRAMES_PER_END]:
-            what_if = corrected.evaluate_frame(frame, left, only_whether=True)
-            if what_if.residual:
-                continue
-            under = corrected.remapped(frame)
-            there = replace(corrected, frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)
-            things = _moved_since(under, corrected.observations, motion, frame)
-            ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, things)
-            if ahead != FREE:
-                walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
-                yield ReestimatedMotion(walk, what_if)
+def _earlier(how: str, newest: Explanation, correction: WalkCorrection, contact_known: bool) -> Explanation:
+    """Return the explanation that an earlier motion ended otherwise, and the newest observation was made so then."""
+    distance = math.hypot(*correction.shift)
+    return newest._replace(how=how, distance=distance, correction=correction, contact_known=contact_known)
 
 
-def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
-    """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since."""
+def _corrected(
+    situation: ObservedSituation, motion: MotionHypothesis, end: WalkEnd
+) -> tuple[ObservedSituation, WalkCorrection]:
+    """Return the situation as it is if an earlier motion ended at `end`, and the correction of everything since."""
     # The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion.
-    frame, believed = surprise.frame, surprise.observations[motion.number].place
+    state = situation.state
+    frame, believed = state.frame, state.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
-    since = [held for held in surprise.held_objects.values() if held.since > motion.number]
-    seen = tuple((held.name, _object_shift(held, shift, surprise)) for held in since)
+    since = [held for held in state.held_objects.values() if held.since > motion.number]
+    seen = tuple((held.name, _object_shift(held, shift, state)) for held in since)
     correction = WalkCorrection(motion.number, shift, seen, motion.in_hand)
-    there, held_objects = (
-        correction.observations(surprise.observations),
-        correction.held_objects(surprise.held_objects, frame),
-    )
-    place = frame.place_from_utak(*correction.place(frame.place_to_utak(*surprise.place)))
-    return replace(surprise, place=place, observations=there, held_objects=held_objects), correction
+    there = tuple(correction.observations(state.observations))
+    place = frame.place_from_utak(*correction.place(frame.place_to_utak(*state.place)))
+    held_objects = correction.held_objects(state.held_objects, frame)
+    return situation.supposing(place=place, observations=there, held_objects=held_objects), correction
 
 
-def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Position:
+def _object_shift(held: HeldObject, shift: Position, state: TrackerState) -> Position:
     """Return the shift of an object when the observation that showed it was made `shift` away."""
     # An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
     # the observation is made.
     if not is_grid_aligned(held.first):
         return shift
-    frame, observation = surprise.frame, surprise.observations[held.since - 1]
+    frame, observation = state.frame, state.observations[held.since - 1]
     elsewhere = observation._replace(place=add(observation.place, shift))
     (west, south), (east, north) = observation_squares(frame, [observation, elsewhere])
     return frame.to_utak(float(east - west), float(north - south))
 
 
-def _moved_since(
-    under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
-) -> frozenset[Square]:
+def _moved_since(state: TrackerState, motion: MotionHypothesis) -> frozenset[Square]:
     """Return the squares that objects covered when a motion was made, without the object in hand."""
-    before = {pose.name: pose for pose in observations[motion.number - 1].moved}
+    before = {pose.name: pose for pose in state.observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
-    for held in under.held_objects.values():
+    for held in state.held_objects.values():
         if held.name != motion.in_hand:
-            lying = object_at(held, before[held.name], frame).polygon if held.name in before else held.first
+            lying = object_at(held, before[held.name], state.frame).polygon if held.name in before else held.first
             squares |= patch_of_polygon(lying).squares()
     return squares

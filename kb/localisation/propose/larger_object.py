@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import shapely
 
-from utak.geometry.motion.se2 import Motion, Translate
+from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon, patch_of_squares
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
@@ -23,14 +23,15 @@ BESIDE_END = range(-3, 4)  # squares about the end of an object: one field of 4 
 SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 
 
-def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
+def propose(situation: ObservedSituation) -> Iterator[Explanation]:
     """Yield explanations that a push went as commanded and the object is larger than it seemed."""
+    held, motion = situation.held, situation.motion
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
     for side in SIDE_DIRECTIONS:
-        agreeing = list(_agreeing_lengths(surprise, held, motion, side))
+        agreeing = list(_agreeing_lengths(situation, held, motion, side))
         if agreeing:
-            yield _best_length(agreeing, surprise)._replace(distance=agreeing[0].explanation.distance)
+            yield _best_length(agreeing, situation)._replace(distance=agreeing[0].explanation.distance)
 
 
 class _Length(NamedTuple):
@@ -42,7 +43,7 @@ class _Length(NamedTuple):
     held_objects: list[HeldObject]  # all held objects after the motion, the larger one last
 
 
-def _best_length(agreeing: list[_Length], surprise: Surprise) -> Explanation:
+def _best_length(agreeing: list[_Length], situation: ObservedSituation) -> Explanation:
     """Return the best of some lengths of an object to one side, given the least first."""
     # It is the greatest over squares that had been settled as occupied, or else the least; but a greater one where
     # something stands at the end that only the greater one accounts for.
@@ -51,41 +52,43 @@ def _best_length(agreeing: list[_Length], surprise: Surprise) -> Explanation:
     for length in agreeing[agreeing.index(best) + 1 :]:
         lying, further = (patch_of_polygon(one.held_objects[-1].polygon).squares() for one in (best, length))
         beside = {(x + i, y + j) for x, y in further - lying for i in BESIDE_END for j in BESIDE_END}
-        short, long = (_clashes_beside(one, beside, surprise) for one in (best, length))
+        short, long = (_clashes_beside(one, beside, situation) for one in (best, length))
         if short and not long:
             best = length
     return best.explanation
 
 
-def _clashes_beside(length: _Length, squares: set[Square], surprise: Surprise) -> bool:
+def _clashes_beside(length: _Length, squares: set[Square], situation: ObservedSituation) -> bool:
     """Return whether the observation contradicts a length if nothing else stands on some squares that are open yet."""
     floor = length.floor.copy()
     open_ = {square for square in squares if floor.state[floor.index(*square)] == OPEN}
     if open_:
         patch = patch_of_squares(open_)
-        floor.declare_patch(patch, FREE, len(surprise.observations) - 1)
+        floor.declare_patch(patch, FREE, len(situation.state.observations) - 1)
     place = length.explanation.place
-    return count_clashes(surprise.frame, floor, length.held_objects, place, surprise.ranges, only_whether=True) > 0
+    return (
+        count_clashes(situation.state.frame, floor, length.held_objects, place, situation.ranges, only_whether=True) > 0
+    )
 
 
 def _agreeing_lengths(
-    surprise: Surprise, held: HeldObject, motion: Translate, side: tuple[int, int]
+    situation: ObservedSituation, held: HeldObject, motion: Translate, side: tuple[int, int]
 ) -> Iterator[_Length]:
     """Yield the lengths by which the object may go on to one side, if the observation agrees, the least first."""
-    occupancy, seen = surprise.occupancy, patch_of_polygon(held.polygon).squares()
-    others = surprise.others(held)
+    occupancy, seen = situation.state.occupancy, patch_of_polygon(held.polygon).squares()
+    others = situation.state.others(held)
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
         whole = _extended(held, side, depth)
         hidden = patch_of_polygon(whole.polygon).squares() - seen
         states = {int(occupancy.state[occupancy.index(*square)]) for square in hidden}
         if FREE in states:
             return
-        outcome = predicted_outcome(surprise.place, whole.polygon, motion)._replace(how="larger")
+        outcome = predicted_outcome(situation.state.place, whole.polygon, motion)._replace(how="larger")
         patch, floor = patch_of_squares(hidden), occupancy.copy()
-        floor.declare_patch(patch, FREE, len(surprise.observations) - 1)
+        floor.declare_patch(patch, FREE, len(situation.state.observations) - 1)
         held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
-        if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
-            found = Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, instead=whole)
+        if not count_clashes(situation.state.frame, floor, held_objects, outcome.place, situation.ranges):
+            found = Explanation("larger", outcome.place, situation.state.frame, 0, float(depth), outcome, instead=whole)
             yield _Length(found, states == {OCCUPIED}, floor, held_objects)
 
 

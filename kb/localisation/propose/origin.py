@@ -9,12 +9,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
-from utak.kb.localisation.hypotheses.explanation import Explanation, reestimated_explanation
+from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
 from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
-from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_walk
+from utak.kb.localisation.hypotheses.reestimation import reestimate_walk
 from utak.kb.localisation.hypotheses.remap import MapReplay, ReplayPrefixes, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.known.situation import ObservedSituation
 from utak.kb.perception.frame import CENTRE, Frame
 
 MAX_WALKS_WITH_ORIGIN = 3  # last walks that are re-estimated together with the origin: bounds the time; tuned
@@ -24,52 +25,47 @@ COARSE_ORIGINS = tuple(
 )
 
 
-def frames_of_coarse_origins(believed: Frame) -> list[Frame]:
-    """Return the frames of the believed orientation with each of the COARSE_ORIGINS: 7 x 7 points of a square."""
-    return [replace(believed, origin=place) for place in COARSE_ORIGINS]
-
-
-def origin_cost(believed: Frame, number: int) -> float:
-    """Return the log odds against an origin at one of `number` of the COARSE_ORIGINS, rather than the believed one."""
-    return OFF_CENTRE_COST * (believed.origin == CENTRE) - math.log(number / len(COARSE_ORIGINS))
+def propose(situation: ObservedSituation) -> list[Explanation]:
+    """Return explanations that one of the last walks was blocked, with another origin, without any contradiction."""
+    state = situation.state
+    if not situation.walked or state.held_objects:
+        return []
+    return blocked_walks_with_origin(state.reestimable, state.frame, situation.observations)
 
 
 def blocked_walks_with_origin(
     motions: Sequence[MotionHypothesis], believed: Frame, observations: Sequence[Observation]
 ) -> list[Explanation]:
     """Return explanations that one of the last walks was blocked, with another origin, without any contradiction."""
-    origins = tuple(exact_hypothesis(frame) for frame in frames_of_coarse_origins(believed))
-    alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}
+    origins = tuple(exact_hypothesis(replace(believed, origin=place)) for place in COARSE_ORIGINS)
+    alike: dict[tuple[int, bytes], list[Explanation]] = {}
     shared: dict[tuple[int, bytes], MapReplay] = {}
     prefixes = cache(lambda frame: ReplayPrefixes(frame, observations, {}, shared))
     for motion in motions[-MAX_WALKS_WITH_ORIGIN:]:
         for walk in reestimate_walk(motion._replace(hypotheses=origins), believed, observations, prefixes):
-            if not walk.residual:
-                squares = observation_squares(walk.hypothesis.frame, _corrected(walk, observations))
-                alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
-    drawn, against = DrawnScenes(), [origin_cost(believed, len(walks)) for walks in alike.values()]
-    maps = [_description(walks[0], observations, drawn) for walks in alike.values()]
-    costs = relative_costs([*zip(maps, against, strict=True)])
-    found = map(_explanation, alike.values())
+            squares = observation_squares(walk.frame, _corrected(walk, observations))
+            alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
+    shares = (len(walks) / len(COARSE_ORIGINS) for walks in alike.values())
+    against = [OFF_CENTRE_COST * (believed.origin == CENTRE) - math.log(share) for share in shares]
+    drawn = DrawnScenes()
+    maps = (remap(one.frame, one.frame, _corrected(one, observations), ()) for one, *_ in alike.values())
+    costs = relative_costs(
+        [MapDescription(one.occupancy, drawn, odds) for one, odds in zip(maps, against, strict=True)]
+    )
     return [
-        one._replace(prior_cost=cost + odds, origin_weighed=True)
-        for one, cost, odds in zip(found, costs, against, strict=True)
+        _likeliest(same)._replace(prior_cost=cost + odds, origin_weighed=True)
+        for same, cost, odds in zip(alike.values(), costs, against, strict=True)
     ]
 
 
-def _corrected(walk: ReestimatedWalk, observations: Sequence[Observation]) -> list[Observation]:
+def _corrected(walk: Explanation, observations: Sequence[Observation]) -> list[Observation]:
     """Return all observations, oldest first, where they were made by a re-estimated walk, Utak's own frame."""
+    assert walk.correction is not None
     *before, newest = walk.correction.observations(observations)
-    return [*before, newest._replace(place=walk.newest)]
+    return [*before, newest._replace(place=walk.frame.place_to_utak(*walk.place))]
 
 
-def _description(walk: ReestimatedWalk, observations: Sequence[Observation], drawn: DrawnScenes) -> MapDescription:
-    """Return the map by a re-estimated walk, as one to be completed; nothing is drawn yet."""
-    frame = walk.hypothesis.frame
-    return MapDescription(remap(frame, frame, _corrected(walk, observations), ()).occupancy, drawn)
-
-
-def _explanation(alike: Sequence[ReestimatedWalk]) -> Explanation:
-    """Return walks of the same squares as one explanation: that of a known contact, then of the most central origin."""
-    walk = min(alike, key=lambda one: (not one.contact_known, math.dist(one.hypothesis.frame.origin, CENTRE)))
-    return reestimated_explanation(walk, tuple(one.hypothesis for one in alike))
+def _likeliest(alike: Sequence[Explanation]) -> Explanation:
+    """Return explanations of the same squares as one: that of a known contact, then of the most central origin."""
+    one = min(alike, key=lambda one: (not one.contact_known, math.dist(one.frame.origin, CENTRE)))
+    return one._replace(hypotheses=tuple(dict.fromkeys(hypothesis for same in alike for hypothesis in same.hypotheses)))

@@ -14,8 +14,10 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
+from utak.geometry.motion.se2 import Rotate
 from utak.kb.localisation.hypotheses.carry_outcomes import motion_length, partial_outcome
 from utak.kb.localisation.hypotheses.contacts import likeliest_contact_near
+from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
     FrameHypothesis,
     OriginBox,
@@ -24,7 +26,7 @@ from utak.kb.localisation.hypotheses.frames import (
     grid_cell_size,
     origin_grid,
 )
-from utak.kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from utak.kb.localisation.known.situation import ObservedSituation
 from utak.kb.perception.frame import Frame
 
 COARSE_ARC = 0.5  # squares that the outermost point of an object goes in one coarse cell of a turn; tuned
@@ -63,28 +65,28 @@ class TurnOriginCell(NamedTuple):
         return [TurnOriginCell(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
 
 
-def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
+def origin_from_turn(situation: ObservedSituation, simple: bool) -> Explanation | None:
     """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none."""
-    points = _origins_left(surprise)
+    points = _origins_left(situation)
     error = math.hypot(*grid_cell_size(points)) / 2
-    tried = (surprise.evaluate_frame(point.frame, (point,), origin_error=error, only_whether=True) for point in points)
-    fitting = [one for one in tried if not one.residual]
-    if not fitting and not (simple and len(surprise.hypotheses) == 1):
-        fitting = _blocked_turns(surprise, _bounds(points))
+    tried = (situation.by_frame(point.frame, (point,), origin_error=error) for point in points)
+    fitting = [one for one in tried if one is not None]
+    if not fitting and not (simple and len(situation.state.hypotheses) == 1):
+        fitting = _blocked_turns(situation, _bounds(points))
     return _middle(fitting) if fitting else None
 
 
-def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
+def _origins_left(situation: ObservedSituation) -> tuple[FrameHypothesis, ...]:
     """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave."""
-    given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
-    return given if len(given) > 1 else origin_grid(surprise.frame, surprise.observations)
+    given = tuple(h for h in situation.state.hypotheses if h.angle == situation.state.frame.angle and h.is_point)
+    return given if len(given) > 1 else origin_grid(situation.state.frame, situation.state.observations)
 
 
-def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
+def _blocked_turns(situation: ObservedSituation, bounds: OriginBox) -> list[Explanation]:
     """Return what fits if a turn of the held object ended early; [] if there was no turn, or if nothing fits."""
-    if surprise.degrees == 0.0:
+    if not situation.carries or not isinstance(situation.motion, Rotate):
         return []
-    place, polygon, motion = surprise.motion_in(surprise.frame)
+    place, polygon, motion = situation.motion_in(situation.state.frame)
     length, (west, south, east, north) = motion_length(place, polygon, motion), bounds
     coarse = TurnOriginCell((0.0, 1.0), (west, east), (south, north))
     cells = coarse.cut(math.ceil(length / COARSE_ARC), COARSE_CUTS, COARSE_CUTS)
@@ -93,37 +95,37 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
             break
         if number:
             cells = [part for cell in cells for part in cell.cut(*SUBDIVISION)]
-        tried = [(cell, _evaluate_cell(surprise, cell, length)) for cell in cells]
-        fitting = [(cell, one) for cell, one in tried if not one.residual]
+        tried = [(cell, _evaluate_cell(situation, cell, length)) for cell in cells]
+        fitting = [(cell, one) for cell, one in tried if one is not None]
         cells = [cell for cell, _ in fitting]
-    return _at_contacts(surprise, fitting, length)
+    return _at_contacts(situation, fitting, length)
 
 
-def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> WhatIf:
-    """Return what contradicts an origin and an end of the turn in a cell."""
-    frame = Frame(surprise.frame.angle, cell.origin)
-    left = (exact_hypothesis(frame),)
-    refuted = surprise.refuted(frame, left)
-    if refuted is not None:
-        return refuted
-    place, polygon, motion = surprise.motion_in(frame)
+def _evaluate_cell(situation: ObservedSituation, cell: TurnOriginCell, length: float) -> Explanation | None:
+    """Return the explanation by an origin and an end of the turn in a cell; None where something contradicts it."""
+    frame = Frame(situation.state.frame.angle, cell.origin)
+    if situation.remapped(frame).residual:
+        return None
+    place, polygon, motion = situation.motion_in(frame)
     outcome = partial_outcome(place, polygon, motion, sum(cell.turn) / 2)
-    return surprise.evaluate_outcome(frame, left, outcome, _cell_slack(cell, length), cell.radius, only_whether=True)
+    left, slack = (exact_hypothesis(frame),), _cell_slack(cell, length)
+    return situation.by_outcome(frame, left, outcome, slack, cell.radius)
 
 
-def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, WhatIf]], length: float) -> list[WhatIf]:
+def _at_contacts(
+    situation: ObservedSituation, fitting: Sequence[tuple[TurnOriginCell, Explanation]], length: float
+) -> list[Explanation]:
     """Return those turns that ended near a likely contact, ended at the contact; all as they are when none has one."""
-    contacts = cache(lambda frame: surprise.obstructions.contacts(*surprise.motion_in(frame)))
+    contacts = cache(lambda frame: situation.obstructions.contacts(*situation.motion_in(frame)))
     stopped = []
     for cell, one in fitting:
-        place, polygon, motion = surprise.motion_in(one.frame)
+        place, polygon, motion = situation.motion_in(one.frame)
         contact = likeliest_contact_near(contacts(one.frame), place, polygon, motion, sum(cell.turn) / 2)
         if contact is not None:
             there = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
-            judged = surprise.evaluate_outcome(
-                one.frame, one.hypotheses, there, _cell_slack(cell, length), cell.radius, only_whether=True
-            )
-            if not judged.residual:
+            slack = _cell_slack(cell, length)
+            judged = situation.by_outcome(one.frame, one.hypotheses, there, slack, cell.radius)
+            if judged is not None:
                 stopped.append((contact.chance, judged))
     best = max((chance for chance, _ in stopped), default=0.0)
     likely = [one for chance, one in stopped if chance >= best / MAX_CHANCE_RATIO]
@@ -144,7 +146,7 @@ def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
     return west, south, east, north
 
 
-def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
+def _middle(fitting: Sequence[Explanation]) -> Explanation:
     """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left."""
     fits = np.array([[one.frame.origin, *_object_corners(one)] for one in fitting])
     nearest = int(np.linalg.norm(fits - fits.mean(0), axis=2).max(1).argmin())
@@ -152,7 +154,7 @@ def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
     return fitting[nearest]._replace(hypotheses=tuple(left))
 
 
-def _object_corners(one: WhatIf) -> list[Position]:
+def _object_corners(one: Explanation) -> list[Position]:
     """Return the corners of the object in hand, (x, y) in squares, map frame of its frame; [] when there is none."""
     if one.outcome is None:
         return []

@@ -6,15 +6,18 @@ new impression, and those after it, show what is there now.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
+from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from utak.kb.localisation.hypotheses.explanation import PRICE_PER_NAT, Explanation, TableChange
 from utak.kb.localisation.hypotheses.frames import FieldRanges, Observation, Position, observation_squares
 from utak.kb.localisation.hypotheses.remap import object_at
-from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.localisation.hypotheses.walk_outcomes import blocked_ends, observation_places
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.mapping.patch import patch_of_polygon, patch_of_squares
 from utak.kb.objects.held_object import HeldObject, Square, subtract_held_objects
@@ -24,12 +27,30 @@ BLOCKED_PRICE = 16  # of a motion that ended early, as in kb/asp/accommodation.l
 SAME_THING_DISTANCE = 2  # squares between squares that changed which count as one thing: half of the largest field
 
 
-def propose_changes(surprise: Surprise, places: Iterable[Position]) -> list[Explanation]:
+def propose(situation: ObservedSituation) -> list[Explanation]:
     """Return explanations by which others changed the table, one for each place where the look may have been made."""
+    state = situation.state
+    if not situation.carries:
+        ends = blocked_ends(state.place, situation.shift)
+        found = _changes(situation, [*observation_places(situation.ahead), *ends])
+    else:  # others took what is in hand before it was moved, or something else, however that ended
+        end = predicted_outcome(state.place, situation.held.polygon, situation.motion)
+        moved = {held.name: held for held in situation.objects_after(end)}
+        after = situation.supposing(held_objects=moved)
+        taken = [one for one in _changes(situation, [state.place]) if one.change and state.in_hand in one.change.gone]
+        others = [one for one in _changes(after, [end.place]) if one.change and state.in_hand not in one.change.gone]
+        found = taken + [one._replace(outcome=end) for one in others]
+    if state.held_objects:  # what the robot moved itself may lie a little otherwise; what is gone does not
+        found = [one for one in found if one.change and one.change.gone and not one.residual]
+    return found
+
+
+def _changes(situation: ObservedSituation, places: Iterable[Position]) -> list[Explanation]:
+    """Return the explanations by which others changed the table, made at some places, the likeliest first."""
     there = list(dict.fromkeys(places))
-    found = [_changed_at(surprise, there[0])]
+    found = [_changed_at(situation, there[0])]
     if found[0] is None or found[0].residual:  # the motion may have ended early, where others explain all
-        early_ends = (_changed_at(surprise, place) for place in there[1:])
+        early_ends = (_changed_at(situation, place) for place in there[1:])
         found += [one if one and not one.residual else None for one in early_ends]
     there = there[: len(found)]
     early = (math.dist(place, there[0]) for place in there)
@@ -41,118 +62,108 @@ def propose_changes(surprise: Surprise, places: Iterable[Position]) -> list[Expl
     ]
 
 
-def _changed_at(surprise: Surprise, place: Position) -> Explanation | None:
+def _changed_at(situation: ObservedSituation, place: Position) -> Explanation | None:
     """Return the explanation that things were moved, and the look was made at `place`; None when nothing changed."""
-    lying = {name: held.possible.squares() for name, held in surprise.held_objects.items()}
-    things: dict[str, set[Square]] = {**{name: set(own) for name, own in surprise.things.items()}, **lying}
-    if surprise.in_hand is not None and _is_seen(surprise, place, lying[surprise.in_hand]):
-        del things[surprise.in_hand]  # it lies a little beside where it is believed, rather than that others took it
-    gone = _gone_things(surprise, place, things)
-    left = [held for name, held in surprise.held_objects.items() if name not in gone]
+    state, look = situation.state, _Look(situation, place)
+    lying = {name: held.possible.squares() for name, held in state.held_objects.items()}
+    things: dict[str, set[Square]] = {**{name: set(own) for name, own in state.things.items()}, **lying}
+    if state.in_hand is not None and look.shows(lying[state.in_hand]):
+        del things[state.in_hand]  # it lies a little beside where it is believed, rather than that others took it
+    gone = _gone_things(look, things)
+    left = [held for name, held in state.held_objects.items() if name not in gone]
     squares = frozenset(square for name in gone for square in things[name])
-    new = _new_squares(surprise, place, left, squares)
+    new = frozenset(square for square in look.crowded(left, squares) if look.state_of(square) == FREE)
     if not gone and not new:
         return None
-    occupancy = surprise.occupancy.copy()
-    changed = squares | new | _around(surprise, place, new - squares)
+    occupancy = state.occupancy.copy()
+    changed = squares | new | _around(look, new - squares)
     occupancy.withdraw_patch(patch_of_squares(changed))
-    x, y = math.floor(place[0]), math.floor(place[1])
-    against = occupancy.newly_occupied(
-        *subtract_held_objects(surprise.frame.samples(), surprise.ranges, x, y, left), x, y
-    )
+    samples = state.frame.samples()
+    counted = subtract_held_objects(samples, situation.ranges, *look.square, left)
+    against = occupancy.newly_occupied(*counted, *look.square)
     if against:  # squares that were open one by one, of which earlier counts together say that fewer are occupied
         new |= against
         changed |= against
         occupancy.withdraw_patch(patch_of_squares(against))
-    residual = count_clashes(surprise.frame, occupancy, left, place, surprise.ranges)
+    residual = count_clashes(state.frame, occupancy, left, place, situation.ranges)
     parts = _count_parts(new - squares) if new - squares else 0
     change = TableChange(tuple(sorted(gone)), changed, parts)
-    acts = max(len(gone), parts)
-    return Explanation("changed", place, surprise.frame, residual, acts, change=change)
+    return Explanation("changed", place, state.frame, residual, max(len(gone), parts), change=change)
 
 
-def _gone_things(surprise: Surprise, place: Position, things: Mapping[str, set[Square]]) -> list[str]:
+class _Look:
+    """A look from a place, compared with the believed map."""
+
+    def __init__(self, situation: ObservedSituation, place: Position) -> None:
+        """Find the squares under each field, map frame."""
+        self.state, self.ranges = situation.state, situation.ranges
+        self.square = (math.floor(place[0]), math.floor(place[1]))
+        self.under = _squares_under(self.state.frame.samples(), *self.square)
+        self.state.occupancy.make_room(*self.square)
+
+    def state_of(self, square: Square) -> int:
+        """Return what the map says of a square: FREE, OCCUPIED or OPEN."""
+        return int(self.state.occupancy.state[self.state.occupancy.index(*square)])
+
+    def shows(self, squares: set[Square]) -> bool:
+        """Return whether the look shows that something stands on any of some squares."""
+        samples = self.state.frame.samples()
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & (self.ranges[:, 0] > 0)
+        return any(not squares.isdisjoint(self.under[field]) for field in np.flatnonzero(single))
+
+    def lacking(self, held: Iterable[HeldObject], opened: Iterable[Square]) -> list[set[Square]]:
+        """Return the squares under each field that shows less than the map and held objects demand."""
+        occupied, _, counts, _ = self._allowed(held, opened)
+        return [self.under[field] for field in np.flatnonzero(occupied > counts[:, 1])]
+
+    def crowded(self, held: Iterable[HeldObject], opened: Iterable[Square]) -> set[Square]:
+        """Return the squares under the fields that show more than the map and held objects allow."""
+        _, possible, counts, slack = self._allowed(held, opened)
+        return {square for field in np.flatnonzero(possible < counts[:, 0] - slack) for square in self.under[field]}
+
+    def _allowed(self, held: Iterable[HeldObject], opened: Iterable[Square]) -> tuple[NDArray[Any], ...]:
+        """Return the least and most counts allowed, those seen, and the slack; opened squares may be either."""
+        (x, y), occupancy = self.square, self.state.occupancy
+        samples, counts = subtract_held_objects(self.state.frame.samples(), self.ranges, x, y, held)
+        states = occupancy.state.copy()
+        for square in opened:
+            states[occupancy.index(*square)] = OPEN
+        at = states[samples.rows + (y - occupancy.south), samples.columns + (x - occupancy.west)]
+        occupied = (samples.weight * (at == OCCUPIED)).sum(1)
+        return occupied, occupied + (samples.weight * (at == OPEN)).sum(1), counts, samples.slack
+
+
+def _gone_things(look: _Look, things: Mapping[str, set[Square]]) -> list[str]:
     """Return the names of the fewest things that are gone where the look shows too little, as far as things explain."""
-    x, y = math.floor(place[0]), math.floor(place[1])
-    samples, gone = surprise.frame.samples(), list[str]()
-    under = _squares_under(samples, x, y)
+    gone = list[str]()
     while True:
-        lacking = _balance(surprise, place, _without(surprise, gone), _squares_of(things, gone))[0]
-        fields = [under[field] for field in np.flatnonzero(lacking)]
+        held = [one for name, one in look.state.held_objects.items() if name not in gone]
+        fields = look.lacking(held, {square for name in gone for square in things[name]})
         shares = {name: sum(not own.isdisjoint(field) for field in fields) for name, own in things.items()}
         left = [
             (-share, name)
             for name, share in shares.items()
-            if share and name not in gone and _is_missed(things[name], under, surprise.ranges)
+            if share and name not in gone and _is_missed(things[name], look)
         ]
         if not left:
             return gone
         gone.append(min(left)[1])
 
 
-def _is_seen(surprise: Surprise, place: Position, squares: set[Square]) -> bool:
-    """Return whether the look shows that something stands on any of some squares."""
-    samples = surprise.frame.samples()
-    single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & (surprise.ranges[:, 0] > 0)
-    x, y = math.floor(place[0]), math.floor(place[1])
-    under = _squares_under(samples, x, y)
-    return any(not squares.isdisjoint(under[field]) for field in np.flatnonzero(single))
-
-
-def _is_missed(own: set[Square], under: Sequence[set[Square]], ranges: FieldRanges) -> bool:
+def _is_missed(own: set[Square], look: _Look) -> bool:
     """Return whether at most half of what would be seen of a thing may be there: else it lies a little otherwise."""
-    expected = [len(own & field) for field in under]
-    there = sum(min(count, int(most)) for count, most in zip(expected, ranges[:, 1], strict=True))
+    expected = [len(own & field) for field in look.under]
+    there = sum(min(count, int(most)) for count, most in zip(expected, look.ranges[:, 1], strict=True))
     return 2 * there <= sum(expected)
 
 
-def _new_squares(
-    surprise: Surprise, place: Position, left: Sequence[HeldObject], gone: frozenset[Square]
-) -> frozenset[Square]:
-    """Return the squares of floor on which something may stand now, since the look shows too much."""
-    x, y = math.floor(place[0]), math.floor(place[1])
-    samples = surprise.frame.samples()
-    surplus = _balance(surprise, place, left, gone)[1]
-    under = _squares_under(samples, x, y)
-    state_at, index = surprise.occupancy.state, surprise.occupancy.index
-    shown = {square for field in np.flatnonzero(surplus) for square in under[field]}
-    return frozenset(square for square in shown if state_at[index(*square)] == FREE)
-
-
-def _around(surprise: Surprise, place: Position, squares: Iterable[Square]) -> set[Square]:
+def _around(look: _Look, squares: Iterable[Square]) -> set[Square]:
     """Return the squares under all fields about some squares, but those where something stands."""
     # A thing covers more squares than those that contradict what was known. What the look shows of them counts.
-    x, y = math.floor(place[0]), math.floor(place[1])
     reach = range(-SAME_THING_DISTANCE, SAME_THING_DISTANCE + 1)
     near = {(column + dx, row + dy) for column, row in squares for dx in reach for dy in reach}
-    fields = (own for own in _squares_under(surprise.frame.samples(), x, y) if not own.isdisjoint(near))
-    state_at, index = surprise.occupancy.state, surprise.occupancy.index
-    return {square for own in fields for square in own if state_at[index(*square)] != OCCUPIED}
-
-
-def _balance(
-    surprise: Surprise, place: Position, held: Iterable[HeldObject], opened: Iterable[Square]
-) -> tuple[Bools, Bools]:
-    """Return which fields show less than the map and held objects allow, and which show more; opened squares may be."""
-    x, y = math.floor(place[0]), math.floor(place[1])
-    occupancy = surprise.occupancy
-    occupancy.make_room(x, y)
-    samples, counts = subtract_held_objects(surprise.frame.samples(), surprise.ranges, x, y, held)
-    states = occupancy.state.copy()
-    for square in opened:
-        states[occupancy.index(*square)] = OPEN
-    at = states[samples.rows + (y - occupancy.south), samples.columns + (x - occupancy.west)]
-    occupied = (samples.weight * (at == OCCUPIED)).sum(1)
-    possible = occupied + (samples.weight * (at == OPEN)).sum(1)
-    return np.asarray(occupied > counts[:, 1]), np.asarray(possible < counts[:, 0] - samples.slack)
-
-
-def _without(surprise: Surprise, gone: Sequence[str]) -> list[HeldObject]:
-    return [held for name, held in surprise.held_objects.items() if name not in gone]
-
-
-def _squares_of(things: Mapping[str, set[Square]], names: Iterable[str]) -> set[Square]:
-    return {square for name in names for square in things[name]}
+    fields = (own for own in look.under if not own.isdisjoint(near))
+    return {square for own in fields for square in own if look.state_of(square) != OCCUPIED}
 
 
 def _squares_under(samples: Samples, x: int, y: int) -> list[set[Square]]:
@@ -169,14 +180,9 @@ def _squares_under(samples: Samples, x: int, y: int) -> list[set[Square]]:
 
 def _count_parts(squares: frozenset[Square]) -> int:
     """Return of how many things some squares may be: those within `SAME_THING_DISTANCE` are of one."""
-    mask = np.pad(patch_of_squares(squares).mask, SAME_THING_DISTANCE)
-    near = mask.copy()
-    for _ in range(SAME_THING_DISTANCE // 2):
-        wide = np.pad(near, 1)
-        near = np.logical_or.reduce(
-            [wide[1 + dy :, 1 + dx :][: near.shape[0], : near.shape[1]] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
-        )
-    return int(components(near).labels.max())
+    half = range(-(SAME_THING_DISTANCE // 2), SAME_THING_DISTANCE // 2 + 1)
+    wide = {(x + dx, y + dy) for x, y in squares for dx in half for dy in half}
+    return int(components(np.pad(patch_of_squares(wide).mask, 1)).labels.max())
 
 
 def forgetting(
@@ -194,21 +200,13 @@ def forgetting(
         for held in gone:
             squares |= patch_of_polygon(held.first).squares() if held.name not in known else set()
         moved = tuple(pose for pose in observation.moved if pose.name not in named)
-        told.append(observation._replace(ranges=silenced(observation.ranges, samples, x, y, squares), moved=moved))
+        told.append(observation._replace(ranges=_silenced(observation.ranges, samples, x, y, squares), moved=moved))
     return tuple(told)
 
 
-def silenced(ranges: FieldRanges, samples: Samples, x: int, y: int, squares: set[Square]) -> FieldRanges:
+def _silenced(ranges: FieldRanges, samples: Samples, x: int, y: int, squares: set[Square]) -> FieldRanges:
     """Return the counts of an observation from the square (x, y); fields over some squares say nothing."""
-    rows = np.array([[row, column] for column, row in squares])
-    south, west = rows.min(0)
-    mask = np.zeros(tuple(rows.max(0) - [south, west] + 1), np.bool_)
-    mask[rows[:, 0] - south, rows[:, 1] - west] = True
-    row, column = samples.rows + (y - south), samples.columns + (x - west)
-    inside = (row >= 0) & (row < mask.shape[0]) & (column >= 0) & (column < mask.shape[1]) & (samples.weight > 0)
-    over = (inside & mask[np.where(inside, row, 0), np.where(inside, column, 0)]).any(1)
-    if not over.any():
-        return ranges
+    over = [not squares.isdisjoint(own) for own in _squares_under(samples, x, y)]
     left = ranges.copy()
     left[over, 0] = 0
     left[over, 1] = samples.weight[over].sum(1) + samples.slack[over]

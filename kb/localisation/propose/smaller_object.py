@@ -1,4 +1,4 @@
-"""Proposals that the held object does not fill the squares in which it was seen.
+"""Proposals that a held object does not fill the squares in which it was seen.
 
 A push shows it in two ways: a side that lies further in enters the next row of squares later, and an object that is
 pressed against something known goes further than its squares would let it.
@@ -11,49 +11,53 @@ from typing import Any
 
 import numpy as np
 
-from utak.geometry.motion.se2 import Motion, Translate
+from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, blocked_by_known
 from utak.kb.localisation.hypotheses.contacts import NO_SQUARES
 from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.frames import Position
-from utak.kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from utak.kb.localisation.hypotheses.frames import FieldRanges, Position
+from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject
 from utak.kb.objects.subcell_extent import SubcellExtent, as_sides, inset_change
 
 
-def smaller_objects(surprise: Surprise, held: HeldObject, motion: Motion, whole: CarryOutcome) -> Iterator[Explanation]:
-    """Yield explanations that a motion went as commanded, or until the object met something, and it is smaller."""
-    # whole : the outcome of the motion as commanded
-    lying = held.moved(whole.polygon, held.slack, whole.degrees, commanded=True)
-    less = refined_extent(surprise, lying, whole.place)
+def propose(situation: ObservedSituation) -> list[Explanation]:
+    """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing."""
+    # Then the motion went as commanded, or until the object met something known.
+    whole = situation.found[0]
+    assert whole.outcome is not None
+    held, outcome = situation.held, whole.outcome
+    lying = held.moved(outcome.polygon, held.slack, outcome.degrees, commanded=True)
+    less = refined_extent(situation.state, lying, situation.ranges, outcome.place)
     if less is not None:
-        outcome = whole._replace(how="smaller", polygon=less.polygon, insets=less.insets)
-        yield Explanation("smaller", whole.place, surprise.frame, 0, 0.0, outcome)
-        return
-    ends = list(_pressed(surprise, held, motion))
-    if ends:
-        extents = np.array([end.insets for end in ends])  # (ends, least and most, sides)
-        together = SubcellExtent(as_sides(extents[:, 0].min(0).tolist()), as_sides(extents[:, 1].max(0).tolist()))
-        outcome = _end_against_known(surprise, held, motion, together) or ends[len(ends) // 2]
-        yield Explanation("smaller", outcome.place, surprise.frame, 0, outcome.distance, outcome)
+        smaller = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
+        return [whole._replace(how="smaller", residual=0, contradicted=False, outcome=smaller)]
+    ends = list(_pressed(situation))
+    if not ends:
+        return []
+    extents = np.array([end.insets for end in ends])  # (ends, least and most, sides)
+    together = SubcellExtent(as_sides(extents[:, 0].min(0).tolist()), as_sides(extents[:, 1].max(0).tolist()))
+    end = _end_against_known(situation, together) or ends[len(ends) // 2]
+    return [Explanation("smaller", end.place, situation.state.frame, 0, end.distance, end)]
 
 
-def refined_extent(surprise: Surprise, held: HeldObject, place: Position) -> HeldObject | None:
+def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
     """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it."""
-    frame, others, nothing = surprise.frame, surprise.others(held), NO_SQUARES
-    floor = surprise.occupancy.supposing(patch_of_polygon(held.polygon).squares())
+    others = state.others(held)
+    floor = state.occupancy.supposing(patch_of_polygon(held.polygon).squares())
 
     def agrees(outline: Any) -> bool:
-        lying = replace(held, polygon=outline, slack=0.0, full=nothing, empty=nothing)
-        return not count_clashes(frame, floor, [*others, lying], place, surprise.ranges)
+        lying = replace(held, polygon=outline, slack=0.0, full=NO_SQUARES, empty=NO_SQUARES)
+        return not count_clashes(state.frame, floor, [*others, lying], place, ranges)
 
     return held.told(agrees)
 
 
-def _pressed(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[CarryOutcome]:
+def _pressed(situation: ObservedSituation) -> Iterator[CarryOutcome]:
     """Yield the ends of a push against something known if the sides ahead lie further in, by one step or more."""
-    insets, quarters = held.lying_insets, held.quarters
+    insets, quarters, motion = situation.held.lying_insets, situation.held.quarters, situation.motion
     if insets is None or quarters is None or not isinstance(motion, Translate):
         return
     ahead = (motion.dx < 0, motion.dx > 0, motion.dy < 0, motion.dy > 0)
@@ -62,22 +66,22 @@ def _pressed(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[C
         least = as_sides(max(side, low) if led else side for side, led in zip(insets.least, ahead, strict=True))
         most = as_sides(min(side, high) if led else side for side, led in zip(insets.most, ahead, strict=True))
         if all(few < many for few, many in zip(least, most, strict=True)):
-            end = _end_against_known(surprise, held, motion, SubcellExtent(least, most).after(-quarters))
+            end = _end_against_known(situation, SubcellExtent(least, most).after(-quarters))
             if end is not None:
                 yield end
 
 
-def _end_against_known(
-    surprise: Surprise, held: HeldObject, motion: Motion, insets: SubcellExtent
-) -> CarryOutcome | None:
-    """Return where something known stops an object with such insets; None if nothing does, or not as was seen."""
-    less = held.inset(insets)
+def _end_against_known(situation: ObservedSituation, insets: SubcellExtent) -> CarryOutcome | None:
+    """Return where something known stops the object with such insets; None if nothing does, or not as was seen."""
+    state, less = situation.state, situation.held.inset(insets)
     if less is None:
         return None
-    end = blocked_by_known(surprise.place, less.polygon, motion, surprise.obstructions.known)
-    told = None if end is None else refined_extent(surprise, less.moved(end.polygon, less.slack), end.place)
-    if end is None or told is None or told.insets is None:
+    end = blocked_by_known(state.place, less.polygon, situation.motion, situation.obstructions.known)
+    if end is None:
+        return None
+    told = refined_extent(state, less.moved(end.polygon, less.slack), situation.ranges, end.place)
+    if told is None or told.insets is None:
         return None
     if max(map(abs, inset_change(told.insets, insets))) < COMMAND_ROUNDING:
         return end._replace(polygon=told.polygon, insets=told.insets)
-    return _end_against_known(surprise, held, motion, told.insets)  # where it is stopped if its sides lie there
+    return _end_against_known(situation, told.insets)  # where it is stopped if its sides lie there

@@ -14,7 +14,7 @@ from utak.kb.body import Impression, Move, Release
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import FrameHypothesis
-from utak.kb.localisation.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
+from utak.kb.localisation.known.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN
 from utak.kb.mapping.patch import Patch

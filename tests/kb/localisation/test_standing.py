@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation
 from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.localisation.standing import standing
-from utak.kb.localisation.state import TrackerState
 from utak.kb.perception.frame import CENTRE, Frame
 
 RANGES = np.zeros((160, 2), np.int16)

@@ -13,9 +13,9 @@ from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 from utak.kb.body import Move, Push, Turn
 from utak.kb.localisation.field_account import CellStatus
+from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
-from utak.kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.objects.held_object import HeldObject
@@ -141,13 +141,13 @@ def test_a_wrong_end_of_a_walk_is_corrected_by_later_observations(seed: int) -> 
 @pytest.mark.parametrize("other", [Frame(0, (0.97, 0.97)), Frame(7)])
 def test_a_contact_with_something_known_is_preferred_to_another_frame(known: bool, other: Frame) -> None:
     """Something known stands just where an earlier motion would have been blocked, and all observations agree then."""
-    told = ReestimatedWalk(CENTRED_HYPOTHESES[0], WalkCorrection(1, (0.5, -0.5)), known, 0)
+    told = WalkCorrection(1, (0.5, -0.5))
     explanations = [
         Explanation("predicted", (9.5, 0.5), Frame(), 6, 0.0),
         Explanation("turned", (9.5, 0.5), other, 0, 0.0),
-        Explanation("misled", (10.0, 0.0), Frame(), 0, 0.7, reestimated=told),
+        Explanation("misled", (10.0, 0.0), Frame(), 0, 0.7, correction=told, contact_known=known),
     ]
-    numbers = [number for number, one in enumerate(explanations) if one.met_known and one.frame == Frame()]
+    numbers = [number for number, one in enumerate(explanations) if one.contact_known and one.frame == Frame()]
     chosen = cheapest(explanations, ["trust(3)", *(f"met({number})" for number in numbers)])
     assert chosen.how == ("misled" if known else "turned")
 
@@ -294,7 +294,7 @@ def test_an_unknown_contact_makes_the_squares_ahead_suspected() -> None:
     thing = shapely.box(22, 18, 27, 21)
     tracker = holding(thing, (21.5, 19.5), posts)
     # how the frame lies is known:
-    tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1], search_count=99)
+    tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1])
     row, column = tracker.state.occupancy.index(29 - 21, -1)
     tracker.state.occupancy.state[row - 3 : row + 6, column] = OPEN  # not seen closely
     stopped = translate(thing, 2, 0)  # of 6

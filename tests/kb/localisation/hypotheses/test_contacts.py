@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
-from utak.kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
+from utak.kb.localisation.hypotheses.contacts import Obstructions, contact_outcomes, likeliest_contact_near
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
@@ -91,7 +91,7 @@ def test_the_likelier_contact_comes_first() -> None:
     squares = {(8, 0): -2.0, (9, 1): 2.0}
     motion = Translate(6.0, 0.0)
     obstructions = Obstructions(map_with(squares, []), UTAK, ELL, motion)
-    first, second = obstructions.outcomes(UTAK, ELL, motion)
+    first, second = contact_outcomes(obstructions.contacts(UTAK, ELL, motion), UTAK, ELL, motion)
     assert (first.contact_squares, second.contact_squares) == (frozenset({(9, 1)}), frozenset({(8, 0)}))
     assert first.polygon.bounds[2] == pytest.approx(9.0)
     assert second.polygon.bounds[2] == pytest.approx(8.0)

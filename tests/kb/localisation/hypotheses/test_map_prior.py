@@ -11,6 +11,7 @@ from utak.geometry.counts.gibbs import CORNER_COST
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
     CENTRED_HYPOTHESES,
+    PLAUSIBLE_COST,
     FrameHypothesis,
     Observation,
     consistent_hypotheses,
@@ -65,7 +66,7 @@ def test_the_best_frame_costs_nothing_and_untried_frames_are_unlikely() -> None:
     assert [h.angle for h in found] == [h.angle for h in CENTRED_HYPOTHESES]
     assert min(h.prior_cost for h in found) == 0.0
     assert sum(h.prior_cost == UNTRIED_COST for h in found) > 25
-    assert sum(h.is_plausible for h in found) <= 8
+    assert sum(h.prior_cost <= PLAUSIBLE_COST for h in found) <= 8
 
 
 @pytest.mark.long
@@ -144,7 +145,7 @@ def test_an_observation_at_a_wrong_place_raises_the_cost_of_the_map() -> None:
     for aside in (0, 1, 2):
         occupancy = looked(room, LOOKS[:2])
         occupancy.observe(Frame().samples(), seen, 5 + aside, 2, 2)
-        maps.append((MapDescription(occupancy), 0.0))
+        maps.append(MapDescription(occupancy))
     costs = relative_costs(maps)
     assert costs[0] == 0.0
     assert min(costs[1:]) > 2

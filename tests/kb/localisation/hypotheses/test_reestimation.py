@@ -7,12 +7,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from tests.kb.eyes import Occupied, impression, random_room, world_of
+from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
-from utak.kb.localisation.hypotheses.reestimation import reestimate_two_walks, reestimate_walk
+from utak.kb.localisation.hypotheses.reestimation import reestimate_walk
 from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
-from utak.kb.mapping.occupancy import OCCUPIED, OccupancyMap
 from utak.kb.perception.frame import Frame, turned
 from utak.kb.perception.retina import count_ranges
 
@@ -43,17 +42,15 @@ def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) ->
         observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
     assume(math.dist(own, way) > 2 * LINE_DISTANCE)
     found = list(reestimate_walk(MotionHypothesis(1, way, CENTRED_HYPOTHESES), Frame(), observations))
-    right = [
-        one
-        for one in found
-        if one.hypothesis.angle == heading and math.dist(one.correction.observations(observations)[1].place, own) < 1e-3
-    ]
+    told = [(one, one.correction.observations(observations)) for one in found if one.correction is not None]
+    assert len(told) == len(found)
+    right = [one for one, there in told if one.frame.angle == heading and math.dist(there[1].place, own) < 1e-3]
     assert right
-    assert all(one.correction.since == 1 and one.residual == 0 for one in right)
-    for one in found:
-        assert not count_contradictions(one.hypothesis.frame, one.correction.observations(observations))
-        assert one.correction.observations(observations)[0] == observations[0]
-        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > LINE_DISTANCE
+    assert all(one.correction and one.correction.since == 1 and one.residual == 0 for one in right)
+    for one, there in told:
+        assert not count_contradictions(one.frame, there)
+        assert there[0] == observations[0]
+        assert math.dist(there[2].place, observations[2].place) > LINE_DISTANCE
 
 
 def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
@@ -62,48 +59,3 @@ def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
     told = list(reestimate_walk(MotionHypothesis(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1]), Frame(), observations))
     assert told == []
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.integers(0, 2**32 - 1))
-def test_two_contacts_in_a_row_are_reestimated_together(seed: int) -> None:
-    """A wall blocked a motion that is believed to have gone as commanded; the next goes against that wall, too."""
-    rng = np.random.default_rng(seed)
-    occupied = world_of(random_room(rng, 26, 26, 8))
-    free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
-    x, y = free[int(rng.integers(len(free)))]
-    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
-    assume(not passes_corner(0.5, 0.5, *way))
-    met = line_crossings((x + 0.5, y + 0.5), way)
-    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
-    assume(stop is not None)
-    assert stop is not None
-    away = stop.before[0] - x - 0.5, stop.before[1] - y - 0.5
-    assume(math.dist(away, way) > 0.3)
-    into = (stop.entered[0] + 0.5 - stop.before[0], stop.entered[1] + 0.5 - stop.before[1])
-    here = math.floor(stop.before[0]), math.floor(stop.before[1])
-    first = Observation(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
-    beside = Observation(count_ranges(impression(occupied, here).retina), way)
-    observations = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
-    motions = MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), MotionHypothesis(2, into, CENTRED_HYPOTHESES[:1])
-    found = list(reestimate_two_walks(*motions, CENTRED_HYPOTHESES[0], observations))
-    for one in found:
-        told = [*one.correction.observations(observations)[:2], observations[2]._replace(place=one.newest)]
-        assert one.contact_known
-        assert not count_contradictions(Frame(), told)
-    known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
-    short = away[0] - way[0], away[1] - way[1]
-    assert not known or any(
-        math.dist(one.correction.shift, short) < 1e-6 and math.dist(one.newest, away) < 1e-6 for one in found
-    )
-
-
-def known_to_be_occupied(
-    occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
-) -> bool:
-    """Return whether a square is settled as occupied by the observations from two others."""
-    occupancy = OccupancyMap()
-    for number, (i, j) in enumerate((start, here)):
-        samples = Frame().samples()
-        occupancy.observe(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
-    return bool(occupancy.state[occupancy.index(*wall)] == OCCUPIED)

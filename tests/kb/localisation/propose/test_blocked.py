@@ -9,11 +9,11 @@ from shapely.affinity import translate
 from tests.kb.drawings import LARGE_ROOM
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
-from utak.geometry.motion.se2 import Translate
 from utak.kb.body import Move, Push
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES
+from utak.kb.localisation.known.situation import ObservedSituation
+from utak.kb.localisation.known.state import TrackerState
 from utak.kb.localisation.propose.blocked import NEGLIGIBLE_CONTACT_CHANCE, possible_ends
-from utak.kb.localisation.state import TrackerState
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.completions import NO_COMPLETIONS, draw_completions, given_squares
 from utak.kb.mapping.occupancy import FREE
@@ -39,15 +39,19 @@ def awake(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | None
 
 def test_a_motion_that_meets_nothing_has_no_ends_to_propose() -> None:
     tracker = awake(world_of(LARGE_ROOM), (20, 20))
-    surprise = tracker.state.surprise(Move(3.0, 0.0), count_ranges(impression(world_of(LARGE_ROOM), (23, 20)).retina))
-    assert possible_ends(surprise, None, Translate(3.0, 0.0)) == []
+    situation = ObservedSituation(
+        tracker.state, Move(3.0, 0.0), count_ranges(impression(world_of(LARGE_ROOM), (23, 20)).retina)
+    )
+    assert possible_ends(situation) == []
 
 
 @pytest.mark.parametrize("far", [18.0, 21.0, 24.0])
 def test_the_chances_of_all_ends_sum_to_one(far: float) -> None:
     tracker = awake(world_of(LARGE_ROOM), (20, 20))
-    surprise = tracker.state.surprise(Move(far, 0.0), count_ranges(impression(world_of(LARGE_ROOM), (42, 20)).retina))
-    whole, *others = possible_ends(surprise, None, Translate(far, 0.0))
+    situation = ObservedSituation(
+        tracker.state, Move(far, 0.0), count_ranges(impression(world_of(LARGE_ROOM), (42, 20)).retina)
+    )
+    whole, *others = possible_ends(situation)
     assert whole.how == "predicted" and {other.how for other in others} == {"blocked"}
     assert whole.place == (0.5 + far, 0.5) and not whole.contact_squares
     assert 0.95 < whole.chance + sum(end.chance for end in others) <= 1 + 1e-9

@@ -11,8 +11,8 @@ from shapely.affinity import rotate, translate
 
 from utak.geometry.motion.first_contact import Obstacles
 from utak.geometry.motion.se2 import Rotate, Translate
+from utak.kb.localisation.held_object_state import MAX_LEANING_DISTANCE, lean_on_obstacle, object_after
 from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
-from utak.kb.localisation.propose.held_object_state import MAX_LEANING_DISTANCE, lean_on_obstacle, object_after
 from utak.kb.objects.held_object import OUTLINE_TOLERANCE, HeldObject
 
 JAMBS = [shapely.box(-6, 4, 0, 6), shapely.box(6, 4, 12, 6)]

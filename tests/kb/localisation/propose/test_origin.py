@@ -27,9 +27,9 @@ Point = tuple[float, float]
 
 def corrected(one: Explanation, observations: list[Observation]) -> list[Observation]:
     """Return the observations where they were made by an explanation."""
-    assert one.reestimated is not None
-    *before, newest = one.reestimated.correction.observations(observations)
-    return [*before, newest._replace(place=one.reestimated.newest)]
+    assert one.correction is not None
+    *before, newest = one.correction.observations(observations)
+    return [*before, newest._replace(place=one.frame.place_to_utak(*one.place))]
 
 
 @pytest.mark.long

@@ -15,7 +15,6 @@ from tests.kb.localisation.hypotheses.test_remap import around
 from utak.kb.body import Turn
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, origin_grid
 from utak.kb.localisation.propose.origin_from_turns import TurnOriginCell
-from utak.kb.localisation.score import MAX_FRAME_SEARCHES
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import OPEN
 from utak.kb.objects.held_object import HeldObject
@@ -53,9 +52,7 @@ def test_a_blocked_turn_tells_the_origin_and_how_far_it_went(fx: float, fy: floa
     tracker.wake(impression(around(thing, room), (20, 20)))
     lies = translate(thing, -20, -20)
     tracker.grasp(HeldObject("o1", lies, lies, proven=True))
-    tracker.state = replace(
-        tracker.state, hypotheses=CENTRED_HYPOTHESES[:1], search_count=MAX_FRAME_SEARCHES
-    )  # the orientation is known
+    tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1])  # the orientation is known
     for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not seen closely
         tracker.state.occupancy.state[tracker.state.occupancy.index(i - 20, j - 20)] = OPEN
     after = rotate(thing, degrees, origin=about)

@@ -8,16 +8,16 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from utak.kb.body import Command
 from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
-    FieldRanges,
+    PLAUSIBLE_COST,
     FrameHypothesis,
     Observation,
     OriginBox,
     Position,
     origin_leeway,
 )
+from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
 from utak.kb.localisation.hypotheses.recognition import Look, places_within
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
@@ -25,7 +25,6 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
     observation_places,
     squares_passed,
 )
-from utak.kb.localisation.hypotheses.what_if import Surprise
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OPEN, OccupancyMap
 from utak.kb.objects.held_object import HeldObject, Square
@@ -54,7 +53,6 @@ class TrackerState:
     blocked_squares: frozenset[Square] = frozenset()
     # Open squares (not settled as free or occupied) one of which probably stopped a held object, map frame
     suspected_squares: frozenset[Square] = frozenset()
-    search_count: int = 0  # number of slow proposals that found nothing or searched all frames. It limits further ones.
     slipped: bool = False  # whether any motion ended beside its predicted end, on this map
     # Whether motions did so on an earlier map, or that contradicted itself, which the robot's own motions explain
     unsteady: bool = False
@@ -82,22 +80,6 @@ class TrackerState:
     # What was believed before it was put where it recognised nothing yet, and what it saw since
     former: "TrackerState | None" = None
     looks: tuple[Look, ...] = ()
-
-    def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
-        """Return an observation that contradicts this state, with what of the state it is judged by."""
-        return Surprise(
-            command,
-            ranges,
-            self.frame,
-            self.place,
-            self.occupancy,
-            self.observations,
-            self.held_objects,
-            self.in_hand,
-            self.hypotheses,
-            self.completions,
-            self.things,
-        )
 
     def places_near(self, place: Position) -> list[Position]:
         """Return the places from which an observation may be made that ends a motion at `place`, one in each square."""
@@ -187,7 +169,7 @@ class TrackerState:
     @property
     def likely_spread(self) -> float:
         """Return the greatest difference between the believed orientation and a plausible one left, in radians."""
-        return self._spread(other for other in self.hypotheses if other.is_plausible)
+        return self._spread(other for other in self.hypotheses if other.prior_cost <= PLAUSIBLE_COST)
 
     def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
         """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians."""
@@ -223,6 +205,12 @@ class TrackerState:
         places = [self.observations[motion.number].place, *motion.likely_ends]
         squares = {(math.floor(x), math.floor(y)) for x, y in (self.frame.place_from_utak(*own) for own in places)}
         return len(squares) > 1
+
+    def prior_cost(self, angle: int) -> float:
+        """Return by how much the map prior of an orientation is worse than the best one, in log odds."""
+        if angle == self.frame.angle:
+            return 0.0
+        return min((one.prior_cost for one in self.hypotheses if one.angle == angle), default=UNTRIED_COST)
 
     # -- obstacles that contacts showed ----------------------------------------------------------
 
