@@ -321,9 +321,15 @@ def test_a_world_is_run_compared_and_counted(tmp_path: Path, capsys: pytest.Capt
     assert json.loads(line)["world"] == "own_plain:3:500"
     calibration.main([*few, "--runs", str(tmp_path / "runs")])  # what was run is not run again
     assert (tmp_path / "runs").read_text().splitlines() == [line] and "`kind/3`" in capsys.readouterr().out
-    samples, once, again = (tmp_path / name for name in ("samples", "once.lp", "again.lp"))
-    places = ["--places", str(tmp_path / "places.lp")]
-    assert priors.main([*few, *places, "--samples", str(samples), "-o", str(once)]) == 0
-    assert "counted_chance(" in (tmp_path / "places.lp").read_text()
-    assert priors.main([*few, *places, "--samples", str(samples), "--recount", "-o", str(again)]) == 0
-    assert once.read_text() == again.read_text() and "counted_solid(" in once.read_text()
+    once, again = tmp_path / "once", tmp_path / "again"
+    few += ["--samples", str(tmp_path / "samples")]
+    for folder, more in ((once, []), (again, ["--recount"])):
+        folder.mkdir()
+        assert priors.main([*few, *more, "--to", str(folder)]) == 0
+    assert {file.name: file.read_text() for file in once.iterdir()} == {f.name: f.read_text() for f in again.iterdir()}
+    counted = (
+        ("place_priors", "counted_chance("),
+        ("priors", "counted_solid("),
+        ("priors_of_whereabouts", "counted_plug("),
+    )
+    assert all(predicate in (once / f"{name}.lp").read_text() for name, predicate in counted)
