@@ -57,7 +57,8 @@ WORDS = {
     ),
     "counted_plug": (
         "K, L, U, W",
-        "Of 1000 stretches of what bounds the floor of case K (slim, broad, wide), L to U squares thick, W were things.",
+        "Of 1000 stretches of what bounds the floor of case K (slim, broad or wide), L to U squares thick, W were "
+        "things.",
         "of 1000 stretches of what bounds the floor of case {K}, {L} to {U} squares thick, {W} were things",
     ),
     "counted_square": (

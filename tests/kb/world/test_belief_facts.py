@@ -110,6 +110,21 @@ def test_a_robot_that_is_lost_may_be_in_any_room() -> None:
     assert len(shares) > 1 and all(len(row) == 3 for row in shares)
 
 
+def test_a_door_behind_which_nothing_was_seen_connects_no_rooms() -> None:
+    rows = [row[:14] + "?" * (len(row) - 14) for row in ROWS]
+    doors = rooms_of(known_model(rows)).doors
+    facts = stated(known_model(rows))
+    assert all(any(fact.startswith(f"connects({door.name},") for fact in facts) == door.joins for door in doors)
+    assert any(fact.startswith("connects(d1,r") for fact in stated(known_model(ROWS)))
+
+
+def test_no_square_is_certain_while_the_robot_may_stand_elsewhere() -> None:
+    model = known_model(ROWS)
+    elsewhere = replace(model, standing=Standing("unsure", model.frame, {(0, 0): 0.99, (1, 0): 0.01}))
+    assert any(fact.startswith("region(") and fact.endswith(",100)") for fact in stated(model))
+    assert not any(fact.startswith(("region(", "segment(")) and fact.endswith(",100)") for fact in stated(elsewhere))
+
+
 def test_the_rooms_of_the_robot_are_those_of_the_squares_in_which_it_may_stand() -> None:
     model = known_model(ROWS)
     rooms = rooms_of(model)
