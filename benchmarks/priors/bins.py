@@ -82,6 +82,7 @@ PLACES = {
     "in_thing": ROOM,
     "door_walled": bins(0, 20, 60, 100, 200),
     "door_unwalled": bins(0, 20, 60, 100),
+    "door_anew": bins(0, 60),
     "door_alone": bins(0, 4),
     "corner": bins(0, 10, 20, 50, 90),
     "corner_unsure": bins(0, 10, 20, 50, 90),
