@@ -17,6 +17,7 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.calibration.moments import HUNDREDTHS, Moment
 from benchmarks.calibration.truth import TrueDoor
 from benchmarks.worlds.odd.houses import COMPASS
+from utak.kb.world.doors import WIDTH_UNCERTAINTY
 from utak.kb.world.place_names import WAKING_ROOM
 from utak.kb.world.rooms import SAME_DOOR
 
@@ -88,8 +89,9 @@ def is_corner(moment: Moment, arguments: tuple[str, ...]) -> bool:
     way = np.array([east * c - north * s, east * s + north * c])
     x, y = (round(value) for value in moment.on_grid(*map(int, arguments[1:3])))
     about = [(x + i, y + j) for i in (-1, 0) for j in (-1, 0)]
-    inner = min(about, key=lambda square: float(np.dot(square, way)))
-    return all(moment.truth.seems(square, square != inner) for square in about)
+    along = {square: round(float(np.dot(square, way)), 6) for square in about}
+    inmost = [square for square in about if along[square] == min(along.values())]  # two where it looks along the grid
+    return any(all(moment.truth.seems(square, square != inner) for square in about) for inner in inmost)
 
 
 def true_rooms(moment: Moment) -> Sequence[BaseGeometry]:
@@ -128,5 +130,5 @@ def _middle(line: LineString) -> Point:
 
 
 def _is_at(door: TrueDoor, line: LineString) -> bool:
-    """Return whether a true door is at the narrowest line of a believed one."""
-    return bool(door[0].distance(_middle(line)) <= DOOR_DISTANCE)
+    """Return whether a true door is at the narrowest line of a believed one, and that leads across all of it."""
+    return bool(door[0].distance(_middle(line)) <= DOOR_DISTANCE and door[1] <= line.length + WIDTH_UNCERTAINTY)

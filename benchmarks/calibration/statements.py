@@ -113,7 +113,7 @@ def _true_squares(moment: Moment, node: str) -> set[Square] | None:
     if node == VERGE:
         return moment.truth.about(VERGE)
     found = moment.nodes.get(node)
-    if found is None:
+    if found is None or found.several:
         return None
     if found.thing is not None:
         return moment.truth.about(found.thing)

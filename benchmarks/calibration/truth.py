@@ -31,6 +31,7 @@ class NodeTruth(NamedTuple):
     kind: str  # object, verge or floor: what covers most of its squares; floor only where nothing else covers any
     thing: str | None  # the thing that covers most of its squares, if its kind is object
     shape: str | None  # the class of the thing; NO_CLASS for several things together; None where there is none
+    several: bool = False  # whether other things cover a good part of it, too
 
 
 class TableTruth:
@@ -65,7 +66,7 @@ class TableTruth:
         if sum(count.values()) <= verge:
             return NodeTruth(VERGE, None, None)
         several = sum(number for _, number in others) >= SEVERAL_SHARE * most
-        return NodeTruth("object", first, NO_CLASS if several else class_of(self.polygons[first]))
+        return NodeTruth("object", first, NO_CLASS if several else class_of(self.polygons[first]), several)
 
     def about(self, name: str) -> set[Square]:
         """Return the squares of a thing, or of the verge, within the table."""

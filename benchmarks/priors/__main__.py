@@ -1,8 +1,6 @@
-"""Count priors in random worlds and write kb/asp/priors.lp and kb/asp/place_priors.lp.
+"""Count priors in random worlds and write the files of priors in kb/asp.
 
-    python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [-o kb/asp/priors.lp]
-                                [--places kb/asp/place_priors.lp]
-    python -m benchmarks.priors --whereabouts ... [-o kb/asp/priors_of_whereabouts.lp]
+    python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [--to kb/asp]
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
 alike: the first step, the last one, and those in between that part the run evenly. Progress goes to stderr. --samples
@@ -12,27 +10,35 @@ keeps what was measured, a JSON line a moment; with --recount it is counted agai
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.runs import LookedAt, numbers, watched
-from benchmarks.calibration.statements import statements
 from benchmarks.harness.judging import CHECKOUT
 from benchmarks.priors.count import (
-    Counted,
     counted_classes,
     counted_joints,
     counted_kinds,
+    counted_movables,
     counted_pieces,
     counted_places,
     counted_squares,
     counted_stretches,
     counted_whereabouts,
 )
-from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, fits_seen, places_seen, regions_seen
+from benchmarks.priors.measures import (
+    FitSeen,
+    PlaceSeen,
+    RegionSeen,
+    TriedSeen,
+    fits_seen,
+    places_seen,
+    regions_seen,
+    tried_seen,
+)
 from benchmarks.priors.whereabouts import (
     MeasuredSeen,
     PieceSeen,
@@ -46,131 +52,93 @@ from benchmarks.priors.whereabouts import (
 from benchmarks.priors.written import places_text, text
 from utak.simulator.run.warming import warm_all
 
-PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
-PLACES_FILE = PRIORS_FILE.with_name("place_priors.lp")
-WHEREABOUTS_FILE = PRIORS_FILE.with_name("priors_of_whereabouts.lp")
-WHOLE_OF_KINDS = "interpretation.lp and shapes.lp"
-
 
 class CountedMoment(NamedTuple):
     """The things of one moment that are counted."""
 
     regions: tuple[RegionSeen, ...]
     fits: tuple[FitSeen, ...]
+    tried: tuple[TriedSeen, ...]
     places: tuple[PlaceSeen, ...]
-    untried: tuple[bool, ...]  # of the objects never moved, which are objects in truth: whether each can be moved
-
-
-class WhereaboutsMoment(NamedTuple):
-    """The things of one moment that are counted of what may be besides what was seen."""
-
-    places: tuple[WhereaboutSeen, ...]
+    whereabouts: tuple[WhereaboutSeen, ...]
     pieces: tuple[PieceSeen, ...]
     joints: tuple[MeasuredSeen, ...]
     stretches: tuple[MeasuredSeen, ...]
     squares: tuple[MeasuredSeen, ...]
 
 
-def whereabouts_noted(look: LookedAt) -> WhereaboutsMoment:
-    """Return what is counted of a moment of what may be besides what was seen."""
-    return WhereaboutsMoment(
-        *(tuple(seen(look)) for seen in (whereabouts_seen, pieces_seen, joints_seen, stretches_seen, squares_seen))
-    )
+MEASURES: Sequence[tuple[Callable[[LookedAt], Iterator[Any]], Callable[..., Any]]] = (  # in the order of CountedMoment
+    (regions_seen, RegionSeen),
+    (fits_seen, FitSeen),
+    (tried_seen, TriedSeen),
+    (places_seen, PlaceSeen),
+    (whereabouts_seen, WhereaboutSeen),
+    (pieces_seen, PieceSeen),
+    (joints_seen, MeasuredSeen),
+    (stretches_seen, MeasuredSeen),
+    (squares_seen, MeasuredSeen),
+)
 
 
 def noted(look: LookedAt) -> CountedMoment:
     """Return what is counted of a moment."""
-    nodes, tried = look.moment.nodes, {node.name for node in look.model.objects if node.moved or node.stuck}
-    untried = (
-        statement.true == 1
-        for statement in statements(look.moment, ("movable",))
-        if (node := statement.fact.partition("(")[2].partition(",")[0]) not in tried and nodes[node].kind == "object"
-    )
-    return CountedMoment(*(tuple(seen(look)) for seen in (regions_seen, fits_seen, places_seen)), tuple(untried))
+    return CountedMoment(*(tuple(seen(look)) for seen, _ in MEASURES))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the worlds, count, and write the file; return 0."""
+    """Run the worlds, count, and write the files; return 0."""
     given = _parser().parse_args(arguments)
-    samples, moments = given.samples, list[Any]()
-    note, read = (whereabouts_noted, _read_whereabouts) if given.whereabouts else (noted, _read)
+    moments = list[CountedMoment]()
     if given.recount:
-        moments = [read(line) for line in samples.read_text().splitlines()]
+        moments = [_read(line) for line in given.samples.read_text().splitlines()]
     else:
         warm_all()
     worlds = () if given.recount else dealt(given.worlds, given.seed, given.noise)
     for number, (asked, noise) in enumerate(worlds, 1):
-        ended = watched(asked, noise, given.max_steps, given.seconds, note, given.parts)
+        ended = watched(asked, noise, given.max_steps, given.seconds, noted, given.parts)
         moments += ended.looks
-        if samples:
-            with samples.open("a") as file:
+        if given.samples:
+            with given.samples.open("a") as file:
                 file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
     command = (
-        f"python -m benchmarks.priors{' --whereabouts' * given.whereabouts} --worlds {given.worlds} "
-        f"--seed {given.seed} --max-steps {given.max_steps} --parts {given.parts} "
-        f"--noise {','.join(f'{noise:g}' for noise in given.noise)}"
+        f"python -m benchmarks.priors --worlds {given.worlds} --seed {given.seed} --max-steps {given.max_steps} "
+        f"--seconds {given.seconds} --parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
     )
-    if given.whereabouts:
-        written_to = given.output or WHEREABOUTS_FILE
-        written_to.write_text(whereabouts_written(moments, f"{command} --seconds {given.seconds}", given.worlds))
-        return 0
-    (given.output or PRIORS_FILE).write_text(written(moments, command, given.worlds))
-    given.places.write_text(places_written(moments, [command], given.worlds))
+    for name, lines in written(moments, [command, f"{given.worlds} worlds of all kinds"]).items():
+        (given.to / name).write_text(lines)
     return 0
 
 
-def written(moments: Sequence[CountedMoment], command: str, worlds: int) -> str:
-    """Return the file of priors that some moments give."""
-    regions = [region for moment in moments for region in moment.regions]
-    fits = [fit for moment in moments for fit in moment.fits]
-    untried = list(chain.from_iterable(moment.untried for moment in moments))
-    movable = Counted("movable", (), sum(untried), len(untried))
-    counts = (
-        f"{worlds} worlds of all kinds, {len(moments)} moments, {len(regions)} regions, {len(fits)} things with fits"
-    )
-    return text([*counted_kinds(regions), *counted_classes(fits)], movable, [command, counts], WHOLE_OF_KINDS)
-
-
-def whereabouts_written(moments: Sequence[WhereaboutsMoment], command: str, worlds: int) -> str:
-    """Return the file of priors of what may be besides what was seen that some moments give."""
-    places, pieces, joints, stretches, squares = (
+def written(moments: Sequence[CountedMoment], told: Sequence[str]) -> Mapping[str, str]:
+    """Return the texts of the files of priors that some moments give, by name. told : how they were made."""
+    regions, fits, tried, places, whereabouts, pieces, joints, stretches, squares = (
         list(chain.from_iterable(seen)) for seen in zip(*moments, strict=True)
     )
-    counts = (
-        f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} places, {len(pieces)} pairs of pieces, "
-        f"{len(joints)} parts of floors, {len(stretches)} stretches, {len(squares)} squares"
-    )
-    counted = [
-        *(*counted_whereabouts(places), *counted_pieces(pieces)),
+    *command, worlds = told
+    what = f"{worlds}, {len(moments)} moments"
+    kinds = f"{what}, {len(regions)} regions, {len(fits)} things with fits"
+    there = f"{what}, {len(whereabouts)} places, {len(pieces)} pairs of pieces, {len(joints)} parts of floors"
+    there += f", {len(stretches)} stretches, {len(squares)} squares"
+    things = [*counted_kinds(regions), *counted_classes(fits), *counted_movables(tried)]
+    may_be = [
+        *(*counted_whereabouts(whereabouts), *counted_pieces(pieces)),
         *(*counted_joints(joints), *counted_stretches(stretches), *counted_squares(squares)),
     ]
-    return text(counted, None, [command, counts], "chances.lp")
-
-
-def _read_whereabouts(line: str) -> WhereaboutsMoment:
-    """Return a moment of what may be besides what was seen from its line of JSON."""
-    kinds = (WhereaboutSeen, PieceSeen, *(MeasuredSeen,) * 3)
-    found = zip(kinds, json.loads(line), strict=True)
-    return WhereaboutsMoment(*(tuple(kind(*one) for one in seen) for kind, seen in found))
-
-
-def places_written(moments: Sequence[CountedMoment], commands: Sequence[str], worlds: int) -> str:
-    """Return the file of what some moments give of places."""
-    places = [place for moment in moments for place in moment.places]
-    counts = f"{worlds} worlds of all kinds, {len(moments)} moments, {len(places)} facts about places"
-    return places_text(list(counted_places(places)), [*commands, counts])
+    return {
+        "priors.lp": text(things, [*command, kinds], "interpretation.lp, shapes.lp and movable.lp"),
+        "priors_of_whereabouts.lp": text(may_be, [*command, there], "chances.lp"),
+        "place_priors.lp": places_text(
+            [*counted_places(places)], [*command, f"{what}, {len(places)} facts about places"]
+        ),
+    }
 
 
 def _read(line: str) -> CountedMoment:
     """Return a moment from its line of JSON."""
-    regions, fits, places, untried = json.loads(line)
-    return CountedMoment(
-        tuple(RegionSeen(*region) for region in regions),
-        tuple(FitSeen(node, tuple(map(tuple, found)), *rest) for node, found, *rest in fits),
-        tuple(PlaceSeen(*place) for place in places),
-        tuple(untried),
-    )
+    found = zip(MEASURES, json.loads(line), strict=True)
+    moment = CountedMoment(*(tuple(kind(*one) for one in seen) for (_, kind), seen in found))
+    return moment._replace(fits=tuple(fit._replace(fits=tuple(map(tuple, fit.fits))) for fit in moment.fits))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -183,9 +151,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--parts", type=int, default=6, help="into how many parts moments part a run (%(default)s)")
     parser.add_argument("--samples", type=Path, help="what was measured, a JSON line a moment; added to")
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
-    parser.add_argument("-o", "--output", type=Path, help="the file (default that of kb/asp)")
-    parser.add_argument("--places", type=Path, default=PLACES_FILE, help="that of places (%(default)s)")
-    parser.add_argument("--whereabouts", action="store_true", help="count what may be besides what was seen, instead")
+    parser.add_argument(
+        "--to", type=Path, default=CHECKOUT / "kb" / "asp", help="the folder of the files (%(default)s)"
+    )
     return parser
 
 

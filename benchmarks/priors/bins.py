@@ -63,12 +63,13 @@ JOINED = {"unfelt": bins(0, 75), "same": WHOLE}
 # Of parts of the floor that unseen floor may join, by case: bins of its measure (kb/task/apart.py).
 PASSAGE = {"near": bins(0, 2, 3), "further": WHOLE, "wall": bins(0, 30), "open": bins(0, 2, 3, 5), "shut": bins(0, 5)}
 # Of stretches of what bounds the floor, by case: bins of their thickness, squares.
-PLUG = {"slim": bins(0, 2, 3, 5), "broad": bins(0, 3, 5)}
+PLUG = {"slim": bins(0, 2, 3, 5), "broad": bins(0, 3, 5), "wide": bins(0, 3, 5)}
 # Of the likeliest square in which the robot may stand, by case: bins of its share of the likelihood, thousandths.
-STANDING = {"unsure": bins(0, 600, 900), "slips": bins(0, 600, 900)}
+STANDING = {"unsure": bins(0, 600, 900), "slips": bins(0, 600, 900), "unexplained": bins(0, 900)}
+UNMOVED = bins(0, 1, 2)  # motions in a row that did not move an object which no motion has moved
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one
-# Of facts about places, by case (kb/world/chances.py): bins of what was measured, percent.
+# Of facts about places, by case (kb/world/chances.py): bins of what was measured.
 TOUCHING, ROOM = bins(0, 5, 20, 40, 60, 90), bins(0, 50, 60, 80, 95)
 PLACES = {
     "adjacent_robot": bins(0, 20, 60),
@@ -79,8 +80,10 @@ PLACES = {
     "adjacent_things_unsure": bins(0, 20, 60),
     "in_robot": ROOM,
     "in_thing": ROOM,
-    "door_seen": bins(0, 50, 51, 99),
-    "door_unseen": bins(0, 50, 51, 99),
+    "door_walled": bins(0, 20, 60, 100, 200),
+    "door_unwalled": bins(0, 20, 60, 100),
+    "door_anew": bins(0, 60),
+    "door_alone": bins(0, 4),
     "corner": bins(0, 10, 20, 50, 90),
     "corner_unsure": bins(0, 10, 20, 50, 90),
 }

@@ -21,12 +21,13 @@ from benchmarks.priors.bins import (
     PLACES,
     PLUG,
     STANDING,
+    UNMOVED,
     WHEREABOUT_MEASURE,
     WHOLE,
     Bin,
     bin_of,
 )
-from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
+from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, TriedSeen
 from benchmarks.priors.whereabouts import MeasuredSeen, PieceSeen, WhereaboutSeen
 
 THOUSAND = 1000
@@ -106,6 +107,14 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
     for misfit in NONE_MISFIT:
         there = [fit for fit in wrong if misfit.holds(fit.fits[0][1])]
         yield Counted("counted_none", (misfit,), sum(fit.shape == NO_CLASS for fit in there), len(there))
+
+
+def counted_movables(tried: Iterable[TriedSeen]) -> Iterator[Counted]:
+    """Yield how many objects that no motion had moved could be moved, by how many in a row had not moved them."""
+    seen = list(tried)
+    for unmoved in UNMOVED:
+        there = [one.movable for one in seen if unmoved.holds(one.unmoved)]
+        yield Counted("counted_movable", (unmoved,), sum(there), len(there))
 
 
 def counted_whereabouts(places: Iterable[WhereaboutSeen]) -> Iterator[Counted]:

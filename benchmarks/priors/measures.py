@@ -45,9 +45,16 @@ class PlaceSeen(NamedTuple):
     true: bool
 
 
+class TriedSeen(NamedTuple):
+    """An object that no motion has moved, as kb/asp/movable.lp is given it."""
+
+    unmoved: int  # how many of the last motions in a row did not move it
+    movable: bool  # in truth
+
+
 def regions_seen(look: LookedAt) -> Iterator[RegionSeen]:
     """Yield the regions of the map that are not floor."""
-    given = _given(look, "interpretation")
+    given = given_to(look, "interpretation")
     solid = {a[0] for name, a in given if name == "region" and a[1] == "nonzero"}
     empty = {a[0] for name, a in given if name == "region" and a[1] == "zero"}
     numbers = {name: {a[0]: int(a[1]) for told, a in given if told == name} for name in ("extent", "mass")}
@@ -101,7 +108,7 @@ def _is_cut(look: LookedAt, region: str) -> bool:
 
 def fits_seen(look: LookedAt) -> Iterator[FitSeen]:
     """Yield the objects whose shape is decided at this moment."""
-    given = _given(look, "shapes")
+    given = given_to(look, "shapes")
     numbers: dict[str, dict[str, int]] = {"open_squares": {}, "full_squares": {}}
     fits: dict[str, list[tuple[int, str, int]]] = {}
     for name, arguments in given:
@@ -133,7 +140,18 @@ def places_seen(look: LookedAt) -> Iterator[PlaceSeen]:
             yield PlaceSeen(*found, statement.true == 1)
 
 
-def _given(look: LookedAt, encoding: str) -> list[tuple[str, tuple[str, ...]]]:
+def tried_seen(look: LookedAt) -> Iterator[TriedSeen]:
+    """Yield the objects that no motion has moved, which are objects in truth."""
+    unmoved = {node.name: node.stuck for node in look.model.objects if not node.moved}
+    for statement in statements(look.moment, ("movable",)):
+        node = atom_parts(statement.fact)[1][0]
+        if node in unmoved and look.moment.nodes[node].kind == "object":
+            yield TriedSeen(unmoved[node], statement.true == 1)
+
+
+def given_to(look: LookedAt, encoding: str) -> list[tuple[str, tuple[str, ...]]]:
     """Return the facts that an encoding was given at this moment, as name and arguments; [] where it was not asked."""
-    found = next((facts for name, facts in look.decisions if name == encoding), ())
+    # The last time: it may have been asked before the model was made anew. Of cut regions alone it is asked besides.
+    asked = (facts for name, facts in reversed(look.decisions) if name == encoding)
+    found = next((facts for facts in asked if not any(fact.startswith("cut(") for fact in facts)), ())
     return [atom_parts(fact) for fact in found]

@@ -1,11 +1,17 @@
 """Measures of what may be besides what was seen, as kb/asp/chances.lp is given them, with what is true."""
 
 from collections.abc import Iterator
+from itertools import groupby
 from typing import NamedTuple
 
 from benchmarks.calibration.runs import LookedAt
 from benchmarks.calibration.whereabouts import TrueAlternatives
+from benchmarks.priors.measures import given_to
 from utak.kb.language.atoms import atom_parts
+from utak.kb.task.alternatives import standing_facts
+from utak.kb.task.apart import joints
+from utak.kb.task.pieces import touching_pieces
+from utak.kb.task.stretches import stretches
 
 CERTAIN_CASE = "sure"  # of a square that is not counted, for it is certain
 
@@ -31,12 +37,12 @@ class PieceSeen(NamedTuple):
 
 def whereabouts_seen(look: LookedAt) -> Iterator[WhereaboutSeen]:
     """Yield the places of things that the task names, where it is known which things these are."""
-    given = _given(look)
-    true = {x: _alternatives(look).place(x) for name, (x, *_) in given if name == "unbound"}
+    given, stated = given_to(look, "chances"), {arguments[0] for arguments in look.moment.rows("may_be", 3)}
+    true = {x: _alternatives(look).place(x) for name, (x, *_) in given if name == "unbound" and x in stated}
     claimed = [arguments for name, arguments in given if name == "claimed"]
     following = {arguments[0] for name, arguments in given if name == "next"}
     for name, arguments in given:
-        if name == "place" and true[arguments[0]] is not None:
+        if name == "place" and true.get(arguments[0]) is not None:
             x, place, case, measure = arguments
             said = [int(c) for y, room, c in claimed if x == y and _is_against(place, case, room, following)]
             yield WhereaboutSeen(x, place, case, int(measure), max(said, default=0), place == true[x])
@@ -51,13 +57,10 @@ def _is_against(place: str, case: str, room: str, following: set[str]) -> bool:
 
 def pieces_seen(look: LookedAt) -> Iterator[PieceSeen]:
     """Yield the pieces that touch and were not seen to move as one, where they are things."""
-    given = _given(look)
-    whole = {arguments[0] for name, arguments in given if name == "whole"}
-    for name, arguments in given:
-        if name == "touch" and arguments[0] not in whole:
-            one, other, felt, share = arguments
-            if (true := _alternatives(look).is_one_thing(one, other)) is not None:
-                yield PieceSeen(felt, int(share), true)
+    for pair in touching_pieces(look.model):
+        one = None if pair.whole else _alternatives(look).is_one_thing(pair.one, pair.other)
+        if one is not None:
+            yield PieceSeen("same" if pair.felt else "unfelt", pair.share, one)
 
 
 class MeasuredSeen(NamedTuple):
@@ -70,37 +73,27 @@ class MeasuredSeen(NamedTuple):
 
 def joints_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
     """Yield the parts of the floor with which others may be joined that no seen floor joins with the robot's."""
-    between = [*_of(look, "between")]
-    true = {apart: _alternatives(look).led_to(apart) for apart, *_ in between}
-    yield from (MeasuredSeen(case, int(measure), true[apart] == other) for apart, other, case, measure in between)
+    for apart, those in groupby(joints(look.model), lambda joint: joint.apart):
+        true = _alternatives(look).led_to(apart)
+        yield from (MeasuredSeen(joint.case, joint.measure, joint.other == true) for joint in those)
 
 
 def stretches_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
     """Yield the stretches of what bounds the floor that were never felt."""
-    for stretch, case, thickness in _of(look, "unfelt"):
-        yield MeasuredSeen(case, int(thickness), _alternatives(look).is_plug(stretch))
+    for stretch in stretches(look.model):
+        yield MeasuredSeen(stretch.case, stretch.thickness, _alternatives(look).is_plug(stretch.name))
 
 
 def squares_seen(look: LookedAt) -> Iterator[MeasuredSeen]:
     """Yield the likeliest square in which the robot may stand, where that is not sure."""
-    stands = [(int(share), int(east), int(north), case) for east, north, case, share in _of(look, "stands")]
-    share, east, north, case = max(stands, default=(0, 0, 0, CERTAIN_CASE))
+    stands = (atom_parts(fact)[1] for fact in standing_facts(look.model))
+    found = [(int(share), int(east), int(north), case) for east, north, case, share in stands]
+    share, east, north, case = max(found, default=(0, 0, 0, CERTAIN_CASE))
     if case != CERTAIN_CASE:
         yield MeasuredSeen(case, share, _alternatives(look).stands(east, north))
-
-
-def _of(look: LookedAt, predicate: str) -> Iterator[tuple[str, ...]]:
-    """Yield the arguments of the facts of a predicate that chances.lp was given at this moment."""
-    yield from (arguments for name, arguments in _given(look) if name == predicate)
 
 
 def _alternatives(look: LookedAt) -> TrueAlternatives:
     """Return the truth beside a moment of a run."""
     assert look.moment.alternatives is not None
     return look.moment.alternatives
-
-
-def _given(look: LookedAt) -> list[tuple[str, tuple[str, ...]]]:
-    """Return the facts that chances.lp was given at this moment, as name and arguments."""
-    found = next((facts for name, facts in look.decisions if name == "chances"), ())
-    return [atom_parts(fact) for fact in found]

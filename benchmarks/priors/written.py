@@ -40,6 +40,11 @@ WORDS = {
         "Of 1000 things whose first class leaves L to U squares wrong and is not the true one, W were of no class.",
         "of 1000 things whose first class leaves {L} to {U} squares wrong and is not the true one, {W} were of none",
     ),
+    "counted_movable": (
+        "L, U, W",
+        "Of 1000 objects that no motion had moved and the last L to U in a row had not, W could be moved.",
+        "of 1000 objects that the last {L} to {U} motions had not moved, and none before, {W} could be moved",
+    ),
     "counted_place": (
         "K, L, U, W",
         "Of 1000 places of case K with a measure of L to U, W were where the thing was that the task names.",
@@ -52,7 +57,8 @@ WORDS = {
     ),
     "counted_plug": (
         "K, L, U, W",
-        "Of 1000 stretches of what bounds the floor of case K (slim or broad), L to U squares thick, W were things.",
+        "Of 1000 stretches of what bounds the floor of case K (slim, broad or wide), L to U squares thick, W were "
+        "things.",
         "of 1000 stretches of what bounds the floor of case {K}, {L} to {U} squares thick, {W} were things",
     ),
     "counted_square": (
@@ -71,21 +77,14 @@ WORDS = {
 COUNTED_OF_PLACES = {
     "counted_chance": (
         "K, L, U, W",
-        "Of 1000 facts about places of case K (kb/world/chances.py) that were measured with L to U percent, W were "
-        "true.",
-        "of 1000 facts of case {K} about places that were measured with {L} to {U} percent, {W} were true",
-    ),
-}
-CONSTANTS = {  # by case: numbers that Python reads, percent
-    "cut": (
-        "cut_object",
-        "Percent: of things that were felt and cut out of the bounds (kb/world/objects.py), so many were objects.",
+        "Of 1000 facts about places of case K (kb/world/chances.py) with a measure of L to U, W were true.",
+        "of 1000 facts of case {K} about places with a measure of {L} to {U}, {W} were true",
     ),
 }
 PRIORS_LINE_WIDTH = 118
 
 
-def text(counted: Sequence[Counted], movable: Counted | None, told: Iterable[str], whole: str) -> str:
+def text(counted: Sequence[Counted], told: Iterable[str], whole: str) -> str:
     """Return a file of priors. told : how it was made, a line each. whole : of which encodings it is a part."""
     what = (
         f"How often alternatives were true, counted: what confidences are made of (a part of {whole}). No number here "
@@ -99,13 +98,6 @@ def text(counted: Sequence[Counted], movable: Counted | None, told: Iterable[str
         "",
     ]
     lines += _facts(counted, WORDS)
-    for row in counted:
-        if row.predicate == "counted_object" and row.given[0] in CONSTANTS:
-            lines += _constant(*CONSTANTS[str(row.given[0])], row)
-    if movable is not None:
-        about = "Percent: of objects that were never tried, so many could be moved; movable.lp reads it."
-        lines += _constant("untried_movable", about, movable)
-    lines = [*lines[: -1 if not lines[-1] else None], ""]
     lines += ["% ---- Words (kb/reasoning/sentences.py): how each predicate reads in explanations ----", ""]
     for predicate in dict.fromkeys(row.predicate for row in counted):
         arguments, _, words = WORDS[predicate]
@@ -136,7 +128,7 @@ def _facts(counted: Sequence[Counted], words: Documented) -> list[str]:
     """Return the facts of predicates, a row each, with what documents them."""
     lines: list[str] = []
     for predicate, rows in groupby(counted, lambda row: row.predicate):
-        facts = [row for row in rows if row.given[0] not in CONSTANTS]
+        facts = [*rows]
         lines += [*_documented(predicate, words), '%! because "It was counted by benchmarks.priors."', f"{predicate}("]
         lines += [
             f"    {_arguments(row)}{';' if row is not facts[-1] else ''}  % {row.true} / {row.of}" for row in facts
@@ -157,10 +149,6 @@ def _documented(predicate: str, words: Documented) -> list[str]:
 def _arguments(row: Counted) -> str:
     given = [f"{one.least}, {one.most}" if isinstance(one, Bin) else one for one in row.given]
     return ", ".join([*given, str(row.thousandths)])
-
-
-def _constant(name: str, about: str, row: Counted) -> list[str]:
-    return [f"% {about} {row.true} / {row.of}", f"#const {name} = {min(99, max(1, round(row.thousandths / 10)))}."]
 
 
 def _wrapped(head: str, words: str) -> list[str]:

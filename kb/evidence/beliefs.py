@@ -171,7 +171,11 @@ class FactExplainer:
         leading = [atom_parts(fact)[1] for fact in now.long_facts if fact.startswith("connects(")]
         doors = [door for door, one, *_ in leading if one == room]
         ends = f"{room} ends at walls, at what was not seen yet, or at necks that are not sure enough to be doors"
-        parted = [] if doors else [Reason("no believed door bounds it", ends, ReasonKind.MEASURED, f"step {step}")]
+        parted = (
+            []
+            if doors
+            else [Reason("no believed door leads from it to another room", ends, ReasonKind.MEASURED, f"step {step}")]
+        )
         floor = squares_reason(self.record, step, FLOOR_NODE)
         return [*self._facts([f"door({door}{end}" for door in doors for end in (",", ")")], step), *parted, floor]
 

@@ -42,7 +42,7 @@ NO_KINDS = Kinds({})
 
 
 def counted_percent(case: str, measure: int) -> int:
-    """Return how often facts about places of a case were true that were measured alike; both 1 to 99, in percent.
+    """Return how often facts about places of a case were true that were measured alike, 1 to 99, in percent.
 
     >>> 0 < counted_percent("corner", 50) < 100
     True

@@ -77,9 +77,10 @@ def standing_facts(model: WorldModel) -> Iterator[str]:
     standing = model.standing
     if standing is None or standing.case == "anew":  # from where it woke it stands anywhere
         return
+    case = "unexplained" if model.contradicted else standing.case
     for (x, y), share in sorted(standing.shares.items()):
         east, north = standing.frame.place_to_utak(x + CENTRE[0], y + CENTRE[1])
-        yield f"stands({hundredths(east)},{hundredths(north)},{standing.case},{round(1000 * share)})"
+        yield f"stands({hundredths(east)},{hundredths(north)},{case},{round(1000 * share)})"
 
 
 def _likeness(node: Node, parameter: str, task: Task, model: WorldModel) -> int:
@@ -102,7 +103,7 @@ def _unseen_places(model: WorldModel, rooms: Rooms) -> Iterator[str]:
         if rim[room] or unsettled[room]:
             yield f"r{room},open,{rim[room]}" if rim[room] else f"r{room},closed,{unsettled[room]}"
     for door in rooms.doors:
-        if door.sides[0] == door.sides[1]:
+        if not door.joins:
             yield f"{door.name},door,{door.confidence}"
 
 
@@ -121,4 +122,4 @@ def _claimed_rooms(unbound: Collection[str], task: Task, rooms: Rooms, bound: Ma
         doors = [door for door in rooms.doors if WAKING_ROOM in door.sides]
         near = {side for door in doors for side in door.sides} - {WAKING_ROOM, NO_ROOM}
         yield from (f"next(r{room})" for room in sorted(near))
-        yield from (f"next({door.name})" for door in doors if door.sides[0] == door.sides[1])
+        yield from (f"next({door.name})" for door in doors if not door.joins)

@@ -39,9 +39,6 @@ class Reconciliation(NamedTuple):
     facts: tuple[str, ...] = ()  # what the encoding was given
 
 
-NOTHING_RECONCILED = Reconciliation({}, (), (), ())
-
-
 def reconcile(
     task: Task,
     model: WorldModel,

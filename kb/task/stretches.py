@@ -28,9 +28,14 @@ class Stretch(NamedTuple):
     thickness: int  # squares from floor to floor
 
     @property
+    def case(self) -> str:
+        """Whether it is as narrow as they may be (slim), up to twice as wide (broad), or wider (wide)."""
+        return "slim" if self.width == MIN_WIDTH else "broad" if self.width <= 2 * MIN_WIDTH else "wide"
+
+    @property
     def fact(self) -> str:
         """The same for kb/asp/chances.lp, without a full stop."""
-        return f"unfelt({self.name},{'slim' if self.width == MIN_WIDTH else 'broad'},{self.thickness})"
+        return f"unfelt({self.name},{self.case},{self.thickness})"
 
     def rectangle(self, model: WorldModel) -> str:
         """Return its containing rectangle as stretch/5, without a full stop."""

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
@@ -20,7 +19,7 @@ from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.perception.interpretation import LONGEST_OBJECT, counted_percent
 from utak.kb.perception.regions import extents
 from utak.kb.world.corners import Corner
-from utak.kb.world.doors import ENCODED_DOOR_RATIO, jamb
+from utak.kb.world.doors import MAX_UNWALLED
 from utak.kb.world.model import ROOT_NODE, VERGE_NODE, Node, WorldModel
 from utak.kb.world.rooms import NO_ROOM, Door, Rooms
 
@@ -81,16 +80,18 @@ def _greatest_beside(values: NDArray[Any]) -> NDArray[Any]:
 class Chances:
     """The confidence of the facts about places of one world model.
 
-    What is not certain has a measure, percent: by `rate` it becomes a confidence, as it was counted for its case.
+    What is not certain has a case and a measure: by `rate` it becomes a confidence, as it was counted. The measure is a
+    chance in percent; of doors, by case: the squares known of the smaller of their two rooms, where what is as long as
+    a wall bounds them (door_walled) or not (door_unwalled), or on a map that was begun anew (door_anew); the width in
+    squares, where one room is known (door_alone).
     """
 
     def __init__(self, model: WorldModel, rooms: Rooms, rate: Callable[[str, int], int] = counted_percent) -> None:
         self.model, self.rooms, self._rate = model, rooms, rate
         view = model.view
-        self.is_sure = view.sure and not model.lost and not model.contradicted
+        self.is_sure = model.beyond_doubt
         self._open = view.state == OPEN
-        certain = model.certain if self.is_sure else np.zeros_like(model.certain)
-        self._surely_free, self._surely_occupied = (certain & (view.state == state) for state in (FREE, OCCUPIED))
+        self._surely_free, self._surely_occupied = (model.certain & (view.state == state) for state in (FREE, OCCUPIED))
 
     # ---- Rooms ----
 
@@ -119,9 +120,12 @@ class Chances:
         return percent
 
     def _is_settled(self, room: int) -> bool:
-        """Return whether no door can part a room: none has it on both sides, and all in it and about it is settled."""
+        """Return whether no door can part a room: none is in it, nothing about it is open, and no thing may be wall."""
         inside = self.rooms.labels == room
         about = with_edge_neighbours(inside)
+        unsure = (self.model.mask(node.patch) for node in self.model.objects if node.confidence < 100)
+        if any((mask & about).any() for mask in unsure):
+            return False
         at_edge = bool(inside[[0, -1]].any() or inside[:, [0, -1]].any())
         settled = self._surely_free | self._surely_occupied
         return not at_edge and bool(settled[about].all()) and all(d.sides != (room, room) for d in self.rooms.doors)
@@ -259,43 +263,13 @@ class Chances:
 
     # ---- Doors and corners ----
 
-    def of_door(self, door: Door, widths: Widths) -> int:
-        """Return the percent of belief in a door; 100 only when what is seen of both sides leaves no doubt."""
-        certain = self.is_sure and self._is_open(door) and self._is_wide(door, widths.most) and self._is_walled(door)
-        if door.confidence == 100 and certain:
-            return 100
-        return self._rate("door_seen" if self._are_sides_seen(door) else "door_unseen", measured(door.confidence / 100))
-
-    def _are_sides_seen(self, door: Door) -> bool:
-        """Return whether a half of what makes a neck a door was seen on both of its sides: floor as wide as itself."""
-        one, other = (float(self._likely_clearance[self.rooms.labels == side].max(initial=0.0)) for side in door.sides)
-        return door.sides[0] != door.sides[1] and 2 * min(one, other) >= ENCODED_DOOR_RATIO * door.width / 2
-
-    def _is_open(self, door: Door) -> bool:
-        """Return whether all squares along the line of a door are free beyond doubt."""
-        return all(self._is(self._surely_free, x, y) for x, y in _places_along(door.a, door.b))
-
-    def _is_wide(self, door: Door, width: float) -> bool:
-        """Return whether the floor seen on both sides of a door is wide enough for a door of some width."""
-        one, other = (float(self._clearance[self.rooms.labels == side].max(initial=0.0)) for side in door.sides)
-        return door.sides[0] != door.sides[1] and 2 * min(one, other) >= ENCODED_DOOR_RATIO * width
-
-    def _is_walled(self, door: Door) -> bool:
-        """Return whether verge bounds a door on both ends beyond doubt."""
-        return all(len(jamb(self._sure_verge, end)[0]) > 0 for end in (door.a, door.b))
-
-    @cached_property
-    def _clearance(self) -> Floats:
-        """The distance of each square that is free beyond doubt to the nearest one that is not."""
-        clearance: Floats = Screen(self._surely_free).clearance
-        return clearance
-
-    @cached_property
-    def _likely_clearance(self) -> Floats:
-        """The distance of each square that is free more likely than not to the nearest one that is not."""
-        view = self.model.view
-        clearance: Floats = Screen(view.seen & (view.probability < 0.5)).clearance
-        return clearance
+    def of_door(self, door: Door) -> int:
+        """Return the percent of belief in a door; never 100, for whether a neck is a door is what people call so."""
+        if not door.joins:
+            return self._rate("door_alone", int(door.width))
+        smaller = min(int(np.count_nonzero(self.rooms.labels == side)) for side in door.sides)
+        walled = "door_walled" if door.confidence > MAX_UNWALLED else "door_unwalled"
+        return self._rate("door_anew" if self.model.anew else walled, smaller)
 
     def widths(self, door: Door) -> Widths:
         """Return between what bounds the width of a door lies, wherever in their squares its walls end."""

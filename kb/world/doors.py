@@ -31,6 +31,7 @@ WIDTH_UNCERTAINTY = 2 * math.sqrt(2)  # squares: a neck is so much wider at most
 NECK_UNSEEN_MARGIN = 10  # squares: free border laid about the map, since the floor may go on there; convention
 MIN_OPENING_RATIO = 1.25  # a neck is reported when the floor is so many times as wide on both sides; convention
 SIDEWAYS_STEP = 1e-6  # of a neck's width: how far beside its line the squares on both sides of the line are looked up
+MAX_UNWALLED = 50  # percent of belief in a neck that something shorter than a wall bounds, at most; a convention
 UNCLEAR_EDGE = 2.0  # squares: on either side of a neck so much of its width may be unclear; tuned
 
 
@@ -165,7 +166,7 @@ def _certainty(
         return 0
     walled = min(int(walls.extents[walls.labels[jamb]].max()) for jamb in jambs)
     if walled < SHORTEST_WALL:
-        return min(50, round(50 * walled / SHORTEST_WALL))
+        return min(MAX_UNWALLED, round(MAX_UNWALLED * walled / SHORTEST_WALL))
     middle = np.add(*line) / 2
     spare = (
         2 * min(passage.sides) / ENCODED_DOOR_RATIO - passage.width
@@ -175,7 +176,7 @@ def _certainty(
         _share_determined(jamb, np.subtract(end, middle), min(UNCLEAR_EDGE, spare), surely_wall)
         for end, jamb in zip(line, jambs, strict=True)
     ]
-    return round(50 + 50 * min(float(model.told[across][inner].mean()), *shares))
+    return round(MAX_UNWALLED + (100 - MAX_UNWALLED) * min(float(model.told[across][inner].mean()), *shares))
 
 
 def _share_determined(jamb: Indices, outward: Floats, furthest: float, surely_wall: Bools) -> float:

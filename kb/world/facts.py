@@ -28,7 +28,7 @@ from utak.kb.world.corners import Corner
 from utak.kb.world.evidence import evidence
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
 from utak.kb.world.pathgraph import pathgraph_facts
-from utak.kb.world.rooms import NO_ROOM, Door, Rooms
+from utak.kb.world.rooms import Door, Rooms
 
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
 SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention
@@ -205,7 +205,8 @@ def _region_facts(model: WorldModel) -> Iterator[str]:
     """Yield the regions of the map, and the node of which each is a part, without full stops."""
     nodes = {node.region: node.name for node in model.objects}
     for region in model.percept.regions:
-        yield f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})"
+        share = min(region.certain, 100 if model.beyond_doubt else SETTLED_CONFIDENCE)
+        yield f"region({region.name},{'nonzero' if region.occupied else 'zero'},{share})"
         whole = VERGE_NODE if model.kinds.of(region.name, "verge") else FLOOR_NODE
         yield f"part_of({region.name},{nodes.get(region.name, whole)})"
 
@@ -297,13 +298,12 @@ def place_facts(model: WorldModel, places: Places, chances: Chances) -> Iterator
 
 def _door_facts(door: Door, model: WorldModel, chances: Chances) -> Iterator[str]:
     """Yield the facts of a door, without full stops."""
-    widths = chances.widths(door)
-    share = chances.of_door(door, widths)
+    widths, share = chances.widths(door), chances.of_door(door)
     yield f"door({door.name},{share})"
     yield f"width({door.name},{hundredths(door.width)})"
     least, most = math.floor(FACT_UNITS_PER_SQUARE * widths.least), math.ceil(FACT_UNITS_PER_SQUARE * widths.most)
     yield f"width({door.name},{least},{most})"
     ends = [hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
     yield f"threshold({door.name},{','.join(map(str, ends))})"
-    if NO_ROOM not in door.sides:
-        yield from dict.fromkeys(f"connects({door.name},r{a},r{b},{share})" for a, b in (door.sides, door.sides[::-1]))
+    if door.joins:
+        yield from (f"connects({door.name},r{a},r{b},{share})" for a, b in (door.sides, door.sides[::-1]))

@@ -123,13 +123,19 @@ class WorldModel:
     shaken: bool = False  # Whether an impression contradicted another one, or a motion ended beside its predicted place
     contradicted: bool = False  # Whether some fields of this impression agree with nothing that is believed
 
+    @property
+    def beyond_doubt(self) -> bool:
+        """Whether what the counts settle is so: the robot can stand in no other square, and nothing is unexplained."""
+        stands = self.standing is None or self.standing.case == "sure"
+        return self.view.sure and stands and not self.lost and not self.contradicted
+
     @cached_property
     def certain(self) -> Bools:
         """Squares that the counts settle beyond doubt, (rows, columns) bool on the view's arrays."""
         # While the orientation of the frame is uncertain by a few degrees, squares far from the waking point are not
         # among them: a small rotation would put others in their place, and nothing may have shown it yet. A large error
         # of orientation would have shown, wherever there is something to see.
-        mask: Bools = (self.view.state != OPEN) & self.view.sure
+        mask: Bools = (self.view.state != OPEN) & self.beyond_doubt
         if 0 < self.spread <= MAX_SMALL_FRAME_DOUBT:
             x, y = self.frame.origin[0] - self.view.west, self.frame.origin[1] - self.view.south
             rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]

@@ -57,6 +57,11 @@ class Door:
         return self.confidence >= MIN_TRIED_DOOR_CONFIDENCE
 
     @property
+    def joins(self) -> bool:
+        """Whether two rooms are known on its sides; else nothing was seen behind it, or a way round it."""
+        return NO_ROOM not in self.sides and self.sides[0] != self.sides[1]
+
+    @property
     def width(self) -> float:
         """The width of its neck from wall to wall, in squares: the least that there may be."""
         return math.dist(self.a, self.b)

@@ -177,6 +177,26 @@ def test_doors_and_corners_are_found_where_they_are() -> None:
     }
 
 
+def test_a_neck_beside_a_thing_in_a_doorway_is_not_that_door() -> None:
+    narrow = ("threshold(d1,550,-250,550,-200)", "door(d1,50)", "width(d1,40,60)")
+    assert verdicts(moment(HERE, *narrow)) == {"door(d1,50)": False}
+
+
+def test_of_a_corner_that_looks_along_the_grid_either_square_is_the_inner_one() -> None:
+    found = moment(HERE, "corner(northeast,0,0,50)")
+    truth = SimpleNamespace(heading=45, utak=(5, 5), seems=lambda square, occupied: occupied == (square != (4, 4)))
+    assert verdicts(found._replace(truth=truth)) == {"corner(northeast,0,0,50)": True}
+    solid = SimpleNamespace(**{**vars(truth), "seems": lambda square, occupied: occupied})
+    assert verdicts(found._replace(truth=solid)) == {"corner(northeast,0,0,50)": False}
+
+
+def test_what_is_several_things_is_compared_with_none_of_them() -> None:
+    found = moment("adjacent(o1,verge,50)", o1=(3, 3, 6, 6))
+    assert len(verdicts(found)) == 1
+    several = {name: node._replace(several=True) for name, node in found.nodes.items()}
+    assert not verdicts(found._replace(nodes=several))
+
+
 def squares(west: int, south: int, east: int, north: int) -> frozenset[tuple[int, int]]:
     return frozenset((x, y) for x in range(west, east) for y in range(south, north))
 
@@ -321,9 +341,15 @@ def test_a_world_is_run_compared_and_counted(tmp_path: Path, capsys: pytest.Capt
     assert json.loads(line)["world"] == "own_plain:3:500"
     calibration.main([*few, "--runs", str(tmp_path / "runs")])  # what was run is not run again
     assert (tmp_path / "runs").read_text().splitlines() == [line] and "`kind/3`" in capsys.readouterr().out
-    samples, once, again = (tmp_path / name for name in ("samples", "once.lp", "again.lp"))
-    places = ["--places", str(tmp_path / "places.lp")]
-    assert priors.main([*few, *places, "--samples", str(samples), "-o", str(once)]) == 0
-    assert "counted_chance(" in (tmp_path / "places.lp").read_text()
-    assert priors.main([*few, *places, "--samples", str(samples), "--recount", "-o", str(again)]) == 0
-    assert once.read_text() == again.read_text() and "counted_solid(" in once.read_text()
+    once, again = tmp_path / "once", tmp_path / "again"
+    few += ["--samples", str(tmp_path / "samples")]
+    for folder, more in ((once, []), (again, ["--recount"])):
+        folder.mkdir()
+        assert priors.main([*few, *more, "--to", str(folder)]) == 0
+    assert {file.name: file.read_text() for file in once.iterdir()} == {f.name: f.read_text() for f in again.iterdir()}
+    counted = (
+        ("place_priors", "counted_chance("),
+        ("priors", "counted_solid("),
+        ("priors_of_whereabouts", "counted_plug("),
+    )
+    assert all(predicate in (once / f"{name}.lp").read_text() for name, predicate in counted)

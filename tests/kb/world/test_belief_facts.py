@@ -69,7 +69,10 @@ def test_what_is_known_completely_is_known() -> None:
     facts = stated(known_model(ROWS))
     check(facts)
     assert {"adjacent(o1,o2)", "adjacent(o2,o1,100)", "adjacent(org,o2)", "adjacent(o2,org,100)"} <= {*facts}
-    assert {"in(org,r1)", "in(o1,r1,100)", "in(o2,r1)", "region(part1,zero)", "part_of(part1,floor)"} <= {*facts}
+    assert {"region(part1,zero)", "part_of(part1,floor)"} <= {*facts}
+    assert not any(fact.startswith("in(") and fact.endswith(",100)") for fact in facts)  # o1 may be a piece of wall
+    free = stated(known_model([row.replace("g", ".").replace("h", ".") for row in ROWS]))
+    assert "in(org,r1)" in free
     apart = ("adjacent(org,verge", "adjacent(org,o1", "adjacent(verge,o")
     near = [int(atom_parts(fact)[1][-1]) for fact in facts if fact.startswith(apart)]
     assert all(share < 10 for share in near)  # a thing that stands free is hardly a part of the verge
@@ -107,6 +110,21 @@ def test_a_robot_that_is_lost_may_be_in_any_room() -> None:
     assert len(shares) > 1 and all(len(row) == 3 for row in shares)
 
 
+def test_a_door_behind_which_nothing_was_seen_connects_no_rooms() -> None:
+    rows = [row[:14] + "?" * (len(row) - 14) for row in ROWS]
+    doors = rooms_of(known_model(rows)).doors
+    facts = stated(known_model(rows))
+    assert all(any(fact.startswith(f"connects({door.name},") for fact in facts) == door.joins for door in doors)
+    assert any(fact.startswith("connects(d1,r") for fact in stated(known_model(ROWS)))
+
+
+def test_no_square_is_certain_while_the_robot_may_stand_elsewhere() -> None:
+    model = known_model(ROWS)
+    elsewhere = replace(model, standing=Standing("unsure", model.frame, {(0, 0): 0.99, (1, 0): 0.01}))
+    assert any(fact.startswith("region(") and fact.endswith(",100)") for fact in stated(model))
+    assert not any(fact.startswith(("region(", "segment(")) and fact.endswith(",100)") for fact in stated(elsewhere))
+
+
 def test_the_rooms_of_the_robot_are_those_of_the_squares_in_which_it_may_stand() -> None:
     model = known_model(ROWS)
     rooms = rooms_of(model)
@@ -118,8 +136,10 @@ def test_the_rooms_of_the_robot_are_those_of_the_squares_in_which_it_may_stand()
         replace(model, standing=standing), rooms, lambda *noted: measured_shares.append(noted) or 60
     ).rooms_of(None)
     assert measured_shares == [("in_robot", 75)] and found == [(1, 60), (2, 40)]
-    certain = replace(model, standing=standing._replace(shares={places[2]: 1.0}))
+    certain = replace(model, objects=(), standing=Standing("sure", model.frame, {places[2]: 1.0}))
     assert Chances(certain, rooms).rooms_of(None) == [(2, 100)]
+    unsure = replace(certain, standing=standing._replace(shares={places[2]: 1.0}))
+    assert Chances(unsure, rooms).rooms_of(None) == [(2, counted_percent("in_robot", 99))]
 
 
 def test_nothing_is_known_of_a_map_in_doubt() -> None:

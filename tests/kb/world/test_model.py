@@ -229,7 +229,7 @@ def test_the_facts_of_a_known_room() -> None:
     rows = ["bbbbbbbb", "b......b", "b.ggg..b", "b.ggg..b", "b......b", "b...U..b", "bbbbbbbb"]
     model = known_model(rows)
     facts = set(model_facts(model, Places(rooms_of(model), corners(model))))
-    assert {"node(org)", "kind(org,utak,100)", "child(org,floor)", "child(floor,o1)", "in(org,r1)"} <= facts
+    assert {"node(org)", "kind(org,utak,100)", "child(org,floor)", "child(floor,o1)"} <= facts
     assert "offset(org,0,0)" in facts
     assert "offset(o1,-100,250)" in facts  # its middle lies one square west and two and a half north
     assert "rect(o1,-250,150,50,350)" in facts

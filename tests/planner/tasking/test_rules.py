@@ -171,10 +171,10 @@ def test_rules_close_whatever_door_may_be_found_where_they_read_nothing_of_it(
 
 def test_a_door_that_is_hardly_one_is_closed_by_a_rule_about_confidence(tmp_path: Path) -> None:
     own = tmp_path / "own.lp"
-    own.write_text(":- occurs(go(D), T), door(D, C), C < 95.")
+    own.write_text(":- occurs(go(D), T), door(D, C), C < 80.")
     situation = situation_with(WALKER, (own,), {})
     west, east = situation.rooms.doors
-    unsure = replace(situation, rooms=replace(situation.rooms, doors=(replace(west, confidence=60), east)))
+    unsure = replace(situation, rooms=replace(situation.rooms, doors=(replace(west, confidence=40), east)))
     assert rules_about_doors(unsure).closed == {west.name} and not rules_about_doors(situation).closed
 
 
