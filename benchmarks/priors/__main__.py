@@ -3,16 +3,18 @@
     python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [-o kb/asp/priors.lp]
                                 [--places kb/asp/place_priors.lp]
     python -m benchmarks.priors --whereabouts ... [-o kb/asp/priors_of_whereabouts.lp]
+    python -m benchmarks.priors --walls ... [-o planner/asp/priors_of_walls.lp]
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
-alike: the first step, the last one, and those in between that part the run evenly. Progress goes to stderr. --samples
+alike: the first step, the last one, and those in between that part the run evenly. With --walls a half of the worlds
+has doorways that things fill, there is no noise, and the moments are all those at which walls are felt. Progress goes to stderr. --samples
 keeps what was measured, a JSON line a moment; with --recount it is counted again, for other bins, without any run.
 """
 
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -30,9 +32,11 @@ from benchmarks.priors.count import (
     counted_places,
     counted_squares,
     counted_stretches,
+    counted_walls,
     counted_whereabouts,
 )
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, fits_seen, places_seen, regions_seen
+from benchmarks.priors.walls import WallSeen, walls_seen, with_plugs
 from benchmarks.priors.whereabouts import (
     MeasuredSeen,
     PieceSeen,
@@ -49,6 +53,7 @@ from utak.simulator.run.warming import warm_all
 PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
 PLACES_FILE = PRIORS_FILE.with_name("place_priors.lp")
 WHEREABOUTS_FILE = PRIORS_FILE.with_name("priors_of_whereabouts.lp")
+WALLS_FILE = CHECKOUT / "planner" / "asp" / "priors_of_walls.lp"
 WHOLE_OF_KINDS = "interpretation.lp and shapes.lp"
 
 
@@ -93,25 +98,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the worlds, count, and write the file; return 0."""
     given = _parser().parse_args(arguments)
     samples, moments = given.samples, list[Any]()
-    note, read = (whereabouts_noted, _read_whereabouts) if given.whereabouts else (noted, _read)
+    note, read = COUNTING[given.counting]
     if given.recount:
         moments = [read(line) for line in samples.read_text().splitlines()]
     else:
         warm_all()
-    worlds = () if given.recount else dealt(given.worlds, given.seed, given.noise)
-    for number, (asked, noise) in enumerate(worlds, 1):
-        ended = watched(asked, noise, given.max_steps, given.seconds, note, given.parts)
+    walls = given.counting == "walls"
+    dealing = with_plugs(given.worlds, given.seed) if walls else dealt(given.worlds, given.seed, given.noise)
+    parts = given.max_steps if walls else given.parts
+    for number, (asked, noise) in enumerate(() if given.recount else dealing, 1):
+        ended = watched(asked, noise, given.max_steps, given.seconds, note, parts)
         moments += ended.looks
         if samples:
             with samples.open("a") as file:
                 file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
     command = (
-        f"python -m benchmarks.priors{' --whereabouts' * given.whereabouts} --worlds {given.worlds} "
-        f"--seed {given.seed} --max-steps {given.max_steps} --parts {given.parts} "
-        f"--noise {','.join(f'{noise:g}' for noise in given.noise)}"
+        f"python -m benchmarks.priors{f' --{given.counting}' if given.counting else ''} --worlds {given.worlds} "
+        f"--seed {given.seed} --max-steps {given.max_steps}"
     )
-    if given.whereabouts:
+    if walls:
+        given.output = given.output or WALLS_FILE
+        given.output.write_text(walls_written(moments, f"{command} --seconds {given.seconds}", given.worlds))
+        return 0
+    command += f" --parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
+    if given.counting == "whereabouts":
         written_to = given.output or WHEREABOUTS_FILE
         written_to.write_text(whereabouts_written(moments, f"{command} --seconds {given.seconds}", given.worlds))
         return 0
@@ -148,6 +159,26 @@ def whereabouts_written(moments: Sequence[WhereaboutsMoment], command: str, worl
     return text(counted, None, [command, counts], "chances.lp")
 
 
+def walls_written(moments: Sequence[Sequence[WallSeen]], command: str, worlds: int) -> str:
+    """Return the file of priors of walls that some moments give."""
+    walls, decisions = list(chain.from_iterable(moments)), sum(map(bool, moments))
+    counts = (
+        f"{worlds} worlds, {worlds // 2} of them with doorways that things fill, or closed; {decisions} decisions "
+        f"where to feel, {len(walls)} places"
+    )
+    return text([*counted_walls(walls)], None, [command, counts], "feel.lp")
+
+
+def _walls_noted(look: LookedAt) -> tuple[WallSeen, ...]:
+    """Return what is counted of a moment of walls."""
+    return tuple(walls_seen(look))
+
+
+def _read_walls(line: str) -> tuple[WallSeen, ...]:
+    """Return a moment of walls from its line of JSON."""
+    return tuple(WallSeen(*wall) for wall in json.loads(line))
+
+
 def _read_whereabouts(line: str) -> WhereaboutsMoment:
     """Return a moment of what may be besides what was seen from its line of JSON."""
     kinds = (WhereaboutSeen, PieceSeen, *(MeasuredSeen,) * 3)
@@ -173,6 +204,13 @@ def _read(line: str) -> CountedMoment:
     )
 
 
+COUNTING: Mapping[str, tuple[Callable[[LookedAt], Any], Callable[[str], Any]]] = {  # what is noted, and read again
+    "": (noted, _read),
+    "whereabouts": (whereabouts_noted, _read_whereabouts),
+    "walls": (_walls_noted, _read_walls),
+}
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.priors", description="Count priors in random worlds.")
     parser.add_argument("--worlds", type=int, default=250, help="how many (%(default)s)")
@@ -185,7 +223,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
     parser.add_argument("-o", "--output", type=Path, help="the file (default that of kb/asp)")
     parser.add_argument("--places", type=Path, default=PLACES_FILE, help="that of places (%(default)s)")
-    parser.add_argument("--whereabouts", action="store_true", help="count what may be besides what was seen, instead")
+    instead = parser.add_mutually_exclusive_group()
+    for name, what in (("whereabouts", "what may be besides what was seen"), ("walls", "walls that are felt")):
+        instead.add_argument(
+            f"--{name}", dest="counting", action="store_const", const=name, default="", help=f"count {what}, instead"
+        )
     return parser
 
 

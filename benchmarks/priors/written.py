@@ -60,6 +60,12 @@ WORDS = {
         "Of 1000 likeliest squares of case K with L to U thousandths of the likelihood, W were that of the robot.",
         "of 1000 likeliest squares of case {K} with {L} to {U} thousandths, {W} were that of the robot",
     ),
+    "counted_wall": (
+        "K, S, W",
+        "In W of 1000 places of walls of kind K that were never felt, a thing began as wide as a doorway, or smaller "
+        "(S: doorway or square).",
+        "in {W} of 1000 places of walls of kind {K} a thing of the width of a {S} began",
+    ),
     "counted_joined": (
         "F, L, U, W",
         "Of 1000 pairs of parts of an outline that touch, with colours F (same or unfelt) and L to U percent for the "

@@ -19,6 +19,7 @@ SHARED_FILES = {
     "shapes": ("priors",),
     "movable": ("priors",),
     "chances": ("priors_of_whereabouts",),
+    "feel": ("priors_of_walls",),
 }
 COUNTED_FACTS = ("place_priors",)  # files of facts alone, which Python reads
 SHARED_PARTS = frozenset(

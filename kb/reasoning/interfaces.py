@@ -38,6 +38,7 @@ Interface = Mapping[Signature, tuple[ArgumentType, ...]]  # argument types by pr
 
 MAX_AMOUNT = 1_000_000  # the greatest count, price or length that users' rules may derive; a convention
 AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)  # a count, a length or a price
+THOUSANDTHS_ARGUMENT = integer_argument("thousandths", 0, 1000)
 NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a thing
 
 
@@ -47,8 +48,8 @@ REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT, PLACE_ARGUMENT, GOAL_AR
 PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT, SUBJECT_ARGUMENT = (  # a subject: a goal, all, robot, task, plan or look
     NAME_ARGUMENT._replace(name=name) for name in ("room", "door", "subject")
 )
-NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
-    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time")
+NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT, HALT_ARGUMENT = (
+    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time", "halt")
 )
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
@@ -123,13 +124,18 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "parameter": ((("wanted", 1), 0),),
     "neck": ((("neck", 5), 0),),
     "convex corner": ((("convex", 3), 0),),
+    "halt": ((("halt", 3), 0),),
 }
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
-TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
+TRANSIENT_NUMBERS = frozenset({"neck", "convex corner", "halt"})
 ROLE_ARGUMENT = word_argument("role", ("bounds", "wall", "thing"))  # that a region is taken for
 CASE_ARGUMENT = word_argument(
     "case",
     ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
+)
+WALL_ARGUMENTS = (  # of walls that are felt
+    word_argument("kind of wall", ("thing", "niche", "rim", "thin", "thick", "unseen", "parting", "plain")),
+    word_argument("width", ("doorway", "square")),
 )
 # By the name of an encoding: the predicates that users' rules may use there, with their argument types.
 USER_RULE_INTERFACES: Mapping[str, Interface] = {
@@ -338,6 +344,12 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stage_attained", 0): (),
         ("verdict", 1): (VERDICT_ARGUMENT,),
     },
+    "feel": {
+        ("halt", 3): (HALT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
+        ("tells", 4): (HALT_ARGUMENT, *WALL_ARGUMENTS, AMOUNT_ARGUMENT),
+        **{(name, 3): (*WALL_ARGUMENTS, THOUSANDTHS_ARGUMENT) for name in ("counted_wall", "supposed")},
+        ("feel", 1): (HALT_ARGUMENT,),
+    },
 }
 # Encodings that answer questions and decide nothing in a run.
 ASKED_ENCODINGS = frozenset({"alternatives"})
@@ -360,6 +372,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
+    "feel": frozenset(USER_RULE_INTERFACES["feel"]) - {("supposed", 3)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
 MADE_LAST = frozenset(
@@ -375,7 +388,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
         **dict.fromkeys(("reconciliation", "chances"), WORLD_PREDICATES),
         "task": WORLD_PREDICATES,
-        "agenda": WORLD_PREDICATES,
+        **dict.fromkeys(("agenda", "feel"), WORLD_PREDICATES),
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.

@@ -8,7 +8,7 @@ Masks are (rows, columns) bool on the arrays of the view, row 0 in the south.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -135,18 +135,12 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
 def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list[FeelingPlace]:
     """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none."""
     model, floor = cost_maps.model, cost_maps.floor
-    kinds = walls_in_question(model, floor, scope)
-    number = np.zeros(floor.shape, np.int64)
-    names = list(WallKind)
-    for rank, kind in enumerate(names, 1):
-        number[kinds[kind]] = rank
     offsets = tuple(model.frame.directions())
     places: dict[int, FeelingPlace] = {}
     stand = floor & ~cost_maps.looked_from
     if scope.allowed is not None:
         stand &= scope.allowed
-    for stretch in _stretches(number > 0):
-        kind = names[min(int(number[square]) for square in stretch) - 1]
+    for kind, stretch in stretches_in_question(walls_in_question(model, floor, scope)):
         about = {(row - dy, column - dx) for row, column in stretch for dx, dy in offsets}
         for row, column in about:
             if 0 <= row < floor.shape[0] and 0 <= column < floor.shape[1] and stand[row, column]:
@@ -154,6 +148,25 @@ def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list
                 place = places.setdefault(index, FeelingPlace(index, Counter(), Counter()))
                 (place.squares if len(stretch) == 1 else place.doorways)[kind] += 1
     return [places[index] for index in sorted(places)]
+
+
+def stretches_in_question(kinds: Mapping[WallKind, Bools]) -> Iterator[tuple[WallKind, Sequence[tuple[int, int]]]]:
+    """Yield where things may begin in some walls in question, each with the likeliest kind of its squares.
+
+    These are each square (row, column) alone, and each DOORWAY_WIDTH squares in a row, the southernmost or westernmost
+    first.
+    """
+    names, number = list(kinds), np.zeros(next(iter(kinds.values())).shape, np.int64)
+    for rank, mask in enumerate(kinds.values(), 1):
+        number[mask] = rank
+    for row, column in np.argwhere(number).tolist():
+        ahead = [[(row + dy * n, column + dx * n) for n in range(DOORWAY_WIDTH)] for dy, dx in ((0, 1), (1, 0))]
+        for stretch in ([(row, column)], *ahead):
+            north, east = stretch[-1]
+            if north < number.shape[0] and east < number.shape[1]:
+                ranks = [int(number[square]) for square in stretch]
+                if all(ranks):
+                    yield names[min(ranks) - 1], stretch
 
 
 def _ground(model: WorldModel) -> Bools:
@@ -243,14 +256,3 @@ def _run_lengths(mask: Bools) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]
     for row, start, stop in runs_along_rows(mask).each():
         lengths[row, start:stop] = stop - start
     return lengths
-
-
-def _stretches(mask: Bools) -> Iterator[list[tuple[int, int]]]:
-    """Yield each square of a mask alone, and each DOORWAY_WIDTH squares of it in a row; squares are (row, column)."""
-    for row, column in np.argwhere(mask).tolist():
-        yield [(row, column)]
-        for dy, dx in ((0, 1), (1, 0)):
-            stretch = [(row + n * dy, column + n * dx) for n in range(DOORWAY_WIDTH)]
-            end = stretch[-1]
-            if end[0] < mask.shape[0] and end[1] < mask.shape[1] and all(mask[square] for square in stretch):
-                yield stretch
