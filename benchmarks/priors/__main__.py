@@ -6,9 +6,10 @@
     python -m benchmarks.priors --walls ... [-o planner/asp/priors_of_walls.lp]
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
-alike: the first step, the last one, and those in between that part the run evenly. With --walls a half of the worlds
-has doorways that things fill, there is no noise, and the moments are all those at which walls are felt. Progress goes to stderr. --samples
-keeps what was measured, a JSON line a moment; with --recount it is counted again, for other bins, without any run.
+alike: the first step, the last one, and those in between that part the run evenly. With --walls two of
+three worlds have doorways that things fill, there is no noise, and the moments are all those at which walls are felt.
+Progress goes to stderr. --samples keeps what was measured, a JSON line a moment; with --recount it is counted again,
+for other bins, without any run.
 """
 
 import argparse
@@ -163,8 +164,8 @@ def walls_written(moments: Sequence[Sequence[WallSeen]], command: str, worlds: i
     """Return the file of priors of walls that some moments give."""
     walls, decisions = list(chain.from_iterable(moments)), sum(map(bool, moments))
     counts = (
-        f"{worlds} worlds, {worlds // 2} of them with doorways that things fill, or closed; {decisions} decisions "
-        f"where to feel, {len(walls)} places"
+        f"{worlds} worlds, {2 * worlds // 3} of them of benchmarks.plugs, the others of all kinds; "
+        f"{decisions} decisions where to feel, {len(walls)} places"
     )
     return text([*counted_walls(walls)], None, [command, counts], "feel.lp")
 

@@ -23,10 +23,11 @@ class WallSeen(NamedTuple):
 
 
 def with_plugs(count: int, seed: int) -> Iterator[tuple[Asked, float]]:
-    """Yield `count` worlds without noise: a half of them with doorways that things fill, the others of all kinds."""
+    """Yield `count` worlds without noise: two of three with doorways that things fill, the others of all kinds."""
     kinds, tasks = (PLUG_PREFIX + kind for kind in PLUG_KINDS), range(1, len(PLUG_TASKS) + 1)
     filled = (Asked(kind, one, task) for one, kind, task in product(range(seed, seed + count), [*kinds], tasks))
-    yield from chain(((asked, 0.0) for asked in islice(filled, count // 2)), dealt(count - count // 2, seed, [0.0]))
+    first = 2 * count // 3
+    yield from chain(((asked, 0.0) for asked in islice(filled, first)), dealt(count - first, seed, [0.0]))
 
 
 def walls_seen(look: LookedAt) -> Iterator[WallSeen]:

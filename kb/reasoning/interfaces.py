@@ -134,7 +134,7 @@ CASE_ARGUMENT = word_argument(
     ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
 )
 WALL_ARGUMENTS = (  # of walls that are felt
-    word_argument("kind of wall", ("thing", "niche", "rim", "thin", "thick", "unseen", "parting", "plain")),
+    word_argument("kind of wall", ("thing", "niche", "rim", "thin", "unseen", "parting", "plain")),
     word_argument("width", ("doorway", "square")),
 )
 # By the name of an encoding: the predicates that users' rules may use there, with their argument types.

@@ -41,8 +41,7 @@ class WallKind(StrEnum):
     NICHE = "niche"  # it is the back of a niche, as a recessed thing leaves it
     RIM = "rim"  # behind it the wall has a niche or sticks out, as a thing leaves it on the far side
     THIN = "thin"  # floor that is not reached was seen behind it, at most MAX_THIN_WALL squares away
-    THICK = "thick"  # likewise, at most MAX_THICK_WALL squares away
-    UNSEEN = "unseen"  # squares that were never seen lie behind it, at most MAX_THICK_WALL squares away
+    UNSEEN = "unseen"  # squares that were never seen lie behind it, or such floor, at most MAX_THICK_WALL squares away
     PARTING = "parting"  # behind it lies floor that is reached already
     PLAIN = "plain"  # nothing but wall was seen behind it
 
@@ -114,12 +113,11 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
         front = unfelt & shift_mask(ground, *step)
         behind = _behind(front, space, reached, seen, step)
         back = (-step[0], -step[1])
-        rim = _cast(niches[back] | sticking, back, MAX_THIN_WALL) & (behind[WallKind.THIN] | behind[WallKind.THICK])
         found = {
             **behind,
             WallKind.THING: front & dilate(things, 1) & ~behind[WallKind.PARTING],
             WallKind.NICHE: front & niches[step] & ~behind[WallKind.PARTING],
-            WallKind.RIM: front & rim,
+            WallKind.RIM: front & _cast(niches[back] | sticking, back, MAX_THIN_WALL) & ~behind[WallKind.PARTING],
         }
         for kind, mask in found.items():
             kinds[kind] |= mask
@@ -156,17 +154,16 @@ def stretches_in_question(kinds: Mapping[WallKind, Bools]) -> Iterator[tuple[Wal
     These are each square (row, column) alone, and each DOORWAY_WIDTH squares in a row, the southernmost or westernmost
     first.
     """
-    names, number = list(kinds), np.zeros(next(iter(kinds.values())).shape, np.int64)
+    names, number = list(kinds), np.zeros_like(next(iter(kinds.values())), np.int64)
+    high, wide = number.shape
     for rank, mask in enumerate(kinds.values(), 1):
         number[mask] = rank
     for row, column in np.argwhere(number).tolist():
         ahead = [[(row + dy * n, column + dx * n) for n in range(DOORWAY_WIDTH)] for dy, dx in ((0, 1), (1, 0))]
         for stretch in ([(row, column)], *ahead):
             north, east = stretch[-1]
-            if north < number.shape[0] and east < number.shape[1]:
-                ranks = [int(number[square]) for square in stretch]
-                if all(ranks):
-                    yield names[min(ranks) - 1], stretch
+            if north < high and east < wide and all(ranks := [int(number[square]) for square in stretch]):
+                yield names[min(ranks) - 1], stretch
 
 
 def _ground(model: WorldModel) -> Bools:
@@ -216,9 +213,9 @@ def _behind(front: Bools, space: Bools, reached: Bools, seen: Bools, step: Squar
         ground, new, solid = (shift_mask(mask, *back) for mask in (ground, new, solid))
         unseen = ~(ground | new | solid)  # what lies beyond the arrays was never seen
         kinds[WallKind.PARTING] |= left & ground
-        thickness = WallKind.THIN if depth <= MAX_THIN_WALL else WallKind.THICK
-        kinds[thickness if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & new
-        kinds[WallKind.UNSEEN if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & unseen
+        beyond = WallKind.UNSEEN if depth <= MAX_THICK_WALL else WallKind.PLAIN
+        kinds[WallKind.THIN if depth <= MAX_THIN_WALL else beyond] |= left & new
+        kinds[beyond] |= left & unseen
         left &= ~(ground | new | unseen)
         if not left.any():
             break
