@@ -1,7 +1,7 @@
-"""Count priors in random worlds and write kb/asp/priors.lp and kb/asp/place_priors.lp.
+"""Count priors in random worlds and write kb/asp/priors.lp and kb/asp/priors_of_places.lp.
 
     python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [-o kb/asp/priors.lp]
-                                [--places kb/asp/place_priors.lp]
+                                [--places kb/asp/priors_of_places.lp]
     python -m benchmarks.priors --whereabouts ... [-o kb/asp/priors_of_whereabouts.lp]
     python -m benchmarks.priors --walls ... [-o planner/asp/priors_of_walls.lp]
 
@@ -52,7 +52,7 @@ from benchmarks.priors.written import places_text, text
 from utak.simulator.run.warming import warm_all
 
 PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
-PLACES_FILE = PRIORS_FILE.with_name("place_priors.lp")
+PLACES_FILE = PRIORS_FILE.with_name("priors_of_places.lp")
 WHEREABOUTS_FILE = PRIORS_FILE.with_name("priors_of_whereabouts.lp")
 WALLS_FILE = CHECKOUT / "planner" / "asp" / "priors_of_walls.lp"
 WHOLE_OF_KINDS = "interpretation.lp and shapes.lp"
