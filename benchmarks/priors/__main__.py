@@ -4,10 +4,13 @@
                                 [--places kb/asp/priors_of_places.lp]
     python -m benchmarks.priors --whereabouts ... [-o kb/asp/priors_of_whereabouts.lp]
     python -m benchmarks.priors --walls ... [-o planner/asp/priors_of_walls.lp]
+    python -m benchmarks.priors --looks ... [-o planner/asp/priors_of_looks.lp]
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
 alike: the first step, the last one, and those in between that part the run evenly. With --walls two of
 three worlds have doorways that things fill, there is no noise, and the moments are all those at which walls are felt.
+With --looks the worlds are those of tasks 3, 5, 6 and 9 of benchmarks.worlds.makers, and the moments all at which the
+robot chooses where to look.
 Progress goes to stderr. --samples keeps what was measured, a JSON line a moment; with --recount it is counted again,
 for other bins, without any run.
 """
@@ -15,7 +18,7 @@ for other bins, without any run.
 import argparse
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,12 +26,14 @@ from typing import Any, NamedTuple
 from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.runs import LookedAt, numbers, watched
 from benchmarks.calibration.statements import statements
+from benchmarks.claims.asked import Asked
 from benchmarks.harness.judging import CHECKOUT
 from benchmarks.priors.count import (
     Counted,
     counted_classes,
     counted_joints,
     counted_kinds,
+    counted_looks,
     counted_pieces,
     counted_places,
     counted_squares,
@@ -36,6 +41,7 @@ from benchmarks.priors.count import (
     counted_walls,
     counted_whereabouts,
 )
+from benchmarks.priors.looks import LookSeen, looks_seen, with_things
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, fits_seen, places_seen, regions_seen
 from benchmarks.priors.walls import WallSeen, walls_seen, with_plugs
 from benchmarks.priors.whereabouts import (
@@ -54,7 +60,7 @@ from utak.simulator.run.warming import warm_all
 PRIORS_FILE = CHECKOUT / "kb" / "asp" / "priors.lp"
 PLACES_FILE = PRIORS_FILE.with_name("priors_of_places.lp")
 WHEREABOUTS_FILE = PRIORS_FILE.with_name("priors_of_whereabouts.lp")
-WALLS_FILE = CHECKOUT / "planner" / "asp" / "priors_of_walls.lp"
+PLANNER_FILES = CHECKOUT / "planner" / "asp"
 WHOLE_OF_KINDS = "interpretation.lp and shapes.lp"
 
 
@@ -104,9 +110,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         moments = [read(line) for line in samples.read_text().splitlines()]
     else:
         warm_all()
-    walls = given.counting == "walls"
-    dealing = with_plugs(given.worlds, given.seed) if walls else dealt(given.worlds, given.seed, given.noise)
-    parts = given.max_steps if walls else given.parts
+    deciding = DECIDING.get(given.counting)
+    dealing = deciding.dealt(given.worlds, given.seed) if deciding else dealt(given.worlds, given.seed, given.noise)
+    parts = given.max_steps if deciding else given.parts
     for number, (asked, noise) in enumerate(() if given.recount else dealing, 1):
         ended = watched(asked, noise, given.max_steps, given.seconds, note, parts)
         moments += ended.looks
@@ -118,9 +124,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         f"python -m benchmarks.priors{f' --{given.counting}' if given.counting else ''} --worlds {given.worlds} "
         f"--seed {given.seed} --max-steps {given.max_steps}"
     )
-    if walls:
-        given.output = given.output or WALLS_FILE
-        given.output.write_text(walls_written(moments, f"{command} --seconds {given.seconds}", given.worlds))
+    if deciding:
+        told = [f"{command} --seconds {given.seconds}", deciding.told(moments, given.worlds)]
+        counted = deciding.counted(chain.from_iterable(moments))
+        (given.output or deciding.file).write_text(text([*counted], None, told, deciding.whole))
         return 0
     command += f" --parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
     if given.counting == "whereabouts":
@@ -160,26 +167,6 @@ def whereabouts_written(moments: Sequence[WhereaboutsMoment], command: str, worl
     return text(counted, None, [command, counts], "chances.lp")
 
 
-def walls_written(moments: Sequence[Sequence[WallSeen]], command: str, worlds: int) -> str:
-    """Return the file of priors of walls that some moments give."""
-    walls, decisions = list(chain.from_iterable(moments)), sum(map(bool, moments))
-    counts = (
-        f"{worlds} worlds, {2 * worlds // 3} of them of benchmarks.plugs, the others of all kinds; "
-        f"{decisions} decisions where to feel, {len(walls)} places"
-    )
-    return text([*counted_walls(walls)], None, [command, counts], "feel.lp")
-
-
-def _walls_noted(look: LookedAt) -> tuple[WallSeen, ...]:
-    """Return what is counted of a moment of walls."""
-    return tuple(walls_seen(look))
-
-
-def _read_walls(line: str) -> tuple[WallSeen, ...]:
-    """Return a moment of walls from its line of JSON."""
-    return tuple(WallSeen(*wall) for wall in json.loads(line))
-
-
 def _read_whereabouts(line: str) -> WhereaboutsMoment:
     """Return a moment of what may be besides what was seen from its line of JSON."""
     kinds = (WhereaboutSeen, PieceSeen, *(MeasuredSeen,) * 3)
@@ -205,10 +192,54 @@ def _read(line: str) -> CountedMoment:
     )
 
 
+class Deciding(NamedTuple):
+    """A count of what the robot chooses among: in which worlds, of what, and into which file."""
+
+    file: Path
+    dealt: Callable[[int, int], Iterator[tuple[Asked, float]]]  # worlds, by their number and a seed
+    seen: Callable[[LookedAt], Iterator[Any]]
+    row: type[Any]  # of what was seen, a named tuple
+    counted: Callable[[Iterable[Any]], Iterator[Counted]]
+    whole: str  # the encoding of which the file is a part
+    worlds: str  # which worlds, in words
+
+    def told(self, moments: Sequence[Sequence[Any]], worlds: int) -> str:
+        """Return in words what was counted."""
+        return f"{worlds} worlds, {self.worlds}; {sum(map(bool, moments))} decisions, {sum(map(len, moments))} choices"
+
+    def noted(self, look: LookedAt) -> tuple[Any, ...]:
+        """Return what is counted of a moment."""
+        return tuple(self.seen(look))
+
+    def read(self, line: str) -> tuple[Any, ...]:
+        """Return a moment from its line of JSON."""
+        return tuple(self.row(*one) for one in json.loads(line))
+
+
+DECIDING = {
+    "walls": Deciding(
+        file=PLANNER_FILES / "priors_of_walls.lp",
+        dealt=with_plugs,
+        seen=walls_seen,
+        row=WallSeen,
+        counted=counted_walls,
+        whole="feel.lp",
+        worlds="two of three of benchmarks.plugs, the others of all kinds",
+    ),
+    "looks": Deciding(
+        file=PLANNER_FILES / "priors_of_looks.lp",
+        dealt=with_things,
+        seen=looks_seen,
+        row=LookSeen,
+        counted=counted_looks,
+        whole="the search for things",
+        worlds="of tasks 3, 5, 6 and 9",
+    ),
+}
 COUNTING: Mapping[str, tuple[Callable[[LookedAt], Any], Callable[[str], Any]]] = {  # what is noted, and read again
     "": (noted, _read),
     "whereabouts": (whereabouts_noted, _read_whereabouts),
-    "walls": (_walls_noted, _read_walls),
+    **{name: (deciding.noted, deciding.read) for name, deciding in DECIDING.items()},
 }
 
 
@@ -225,7 +256,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("-o", "--output", type=Path, help="the file (default that of kb/asp)")
     parser.add_argument("--places", type=Path, default=PLACES_FILE, help="that of places (%(default)s)")
     instead = parser.add_mutually_exclusive_group()
-    for name, what in (("whereabouts", "what may be besides what was seen"), ("walls", "walls that are felt")):
+    for name, what in (
+        ("whereabouts", "what may be besides what was seen"),
+        ("walls", "walls that are felt"),
+        ("looks", "looks for things"),
+    ):
         instead.add_argument(
             f"--{name}", dest="counting", action="store_const", const=name, default="", help=f"count {what}, instead"
         )
