@@ -38,9 +38,9 @@ class Entry(NamedTuple):
 def encodings() -> list[Path]:
     """Return all encodings, files or folders, and the parts that they share; the world model's own vocabulary first."""
     sys.path.insert(0, str(ROOT))
-    from utak.kb.reasoning.encodings import KB_ENCODINGS, SHARED_PARTS, all_encodings
+    from utak.kb.reasoning.encodings import ENCODING_FOLDERS, SHARED_PARTS, all_encodings
 
-    parts = [KB_ENCODINGS / f"{name}.lp" for name in SHARED_PARTS]
+    parts = [path for folder in ENCODING_FOLDERS for path in folder.iterdir() if path.stem in SHARED_PARTS]
     return sorted([*all_encodings(), *parts], key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
 
 

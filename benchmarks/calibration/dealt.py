@@ -7,10 +7,12 @@ import numpy as np
 from shapely import Polygon
 
 from benchmarks.claims.asked import ASKED_KINDS, OWN_PREFIX, Asked, all_kinds, worlds_of
+from benchmarks.worlds.filled.doorplugs import PLUG_TASKS, plugged_world
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.odd.kinds import odd_world
 from benchmarks.worlds.odd.openings import WIDE_OPENING_KIND
 
+PLUG_PREFIX = "filled_"  # before the names of the kinds of benchmarks.worlds.filled.doorplugs; their tasks from 1 on
 VARIANTS_WITH_DOORS = ("door",)  # of worlds with wide openings: others have none, or one that may be called so
 
 
@@ -40,6 +42,9 @@ def made(asked: Asked) -> DealtWorld:
     if asked.kind.startswith(OWN_PREFIX):
         own = scenario(asked.task, asked.seed, asked.kind.removeprefix(OWN_PREFIX))
         return DealtWorld(asked, own, tuple((door.polygon, float(door.width)) for door in own.plan.doors))
+    if asked.kind.startswith(PLUG_PREFIX):
+        kind, task = asked.kind.removeprefix(PLUG_PREFIX), PLUG_TASKS[asked.task - 1]
+        return DealtWorld(asked, plugged_world(kind, task, asked.seed), None)
     odd = odd_world(asked.kind, asked.seed, ASKED_KINDS)
     if asked.kind == WIDE_OPENING_KIND and odd.variant not in VARIANTS_WITH_DOORS:
         return DealtWorld(asked, odd, None)

@@ -116,9 +116,14 @@ class TrueAlternatives(NamedTuple):
     def is_plug(self, name: str) -> bool:
         """Return whether things cover most of a stretch of what bounds the floor."""
         mask = next(stretch.mask for stretch in stretches(self.model) if stretch.name == name)
-        squares, verge = self._squares(mask).keys(), self.truth.about(VERGE)
-        things = {square for thing in self.truth.things for square in self.truth.about(thing)} - verge
-        return 2 * len(squares & things) > len(squares)
+        squares = {(row, column) for row, column in np.argwhere(mask).tolist()}
+        return 2 * len(squares & self.thing_squares()) > len(squares)
+
+    def thing_squares(self) -> set[tuple[int, int]]:
+        """Return the squares that things cover, and no verge: row and column on the arrays of the view."""
+        things = {square for thing in self.truth.things for square in self.truth.about(thing)}
+        there = self._squares(self.model.view.seen)
+        return {there[square] for square in things - self.truth.about(VERGE) if square in there}
 
     def led_to(self, apart: str) -> str:
         """Return the part of the floor to which a way over the true floor leads first from another one."""

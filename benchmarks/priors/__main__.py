@@ -1,34 +1,44 @@
-"""Count priors in random worlds and write the files of priors in kb/asp.
+"""Count priors in random worlds and write the files of priors in kb/asp, or one in planner/asp.
 
     python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [--to kb/asp]
+    python -m benchmarks.priors --walls ...      (planner/asp/priors_of_walls.lp)
+    python -m benchmarks.priors --looks ...      (planner/asp/priors_of_looks.lp)
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
-alike: the first step, the last one, and those in between that part the run evenly. Progress goes to stderr. --samples
-keeps what was measured, a JSON line a moment; with --recount it is counted again, for other bins, without any run.
+alike: the first step, the last one, and those in between that part the run evenly. With --walls two of three worlds
+have doorways that things fill, there is no noise, and the moments are all those at which walls are felt. With --looks
+the worlds are those of tasks 3, 5, 6 and 9 of benchmarks.worlds.makers, and the moments all at which the robot chooses
+where to look. Progress goes to stderr. --samples keeps what was measured, a JSON line a moment; with --recount it is
+counted again, for other bins, without any run.
 """
 
 import argparse
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.calibration.dealt import dealt
 from benchmarks.calibration.runs import LookedAt, numbers, watched
+from benchmarks.claims.asked import Asked
 from benchmarks.harness.judging import CHECKOUT
 from benchmarks.priors.count import (
+    Counted,
     counted_classes,
     counted_joints,
     counted_kinds,
+    counted_looks,
     counted_movables,
     counted_pieces,
     counted_places,
     counted_squares,
     counted_stretches,
+    counted_walls,
     counted_whereabouts,
 )
+from benchmarks.priors.looks import LookSeen, looks_seen, with_things
 from benchmarks.priors.measures import (
     FitSeen,
     PlaceSeen,
@@ -39,6 +49,7 @@ from benchmarks.priors.measures import (
     regions_seen,
     tried_seen,
 )
+from benchmarks.priors.walls import WallSeen, walls_seen, with_plugs
 from benchmarks.priors.whereabouts import (
     MeasuredSeen,
     PieceSeen,
@@ -51,6 +62,8 @@ from benchmarks.priors.whereabouts import (
 )
 from benchmarks.priors.written import places_text, text
 from utak.simulator.run.warming import warm_all
+
+KB_FILES, PLANNER_FILES = CHECKOUT / "kb" / "asp", CHECKOUT / "planner" / "asp"
 
 
 class CountedMoment(NamedTuple):
@@ -88,25 +101,32 @@ def noted(look: LookedAt) -> CountedMoment:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the worlds, count, and write the files; return 0."""
     given = _parser().parse_args(arguments)
-    moments = list[CountedMoment]()
+    deciding, moments = DECIDING.get(given.counting), list[Any]()
+    note, read = (deciding.noted, deciding.read) if deciding else (noted, _read)
     if given.recount:
-        moments = [_read(line) for line in given.samples.read_text().splitlines()]
+        moments = [read(line) for line in given.samples.read_text().splitlines()]
     else:
         warm_all()
-    worlds = () if given.recount else dealt(given.worlds, given.seed, given.noise)
-    for number, (asked, noise) in enumerate(worlds, 1):
-        ended = watched(asked, noise, given.max_steps, given.seconds, noted, given.parts)
+    dealing = deciding.dealt(given.worlds, given.seed) if deciding else dealt(given.worlds, given.seed, given.noise)
+    parts = given.max_steps if deciding else given.parts
+    for number, (asked, noise) in enumerate(() if given.recount else dealing, 1):
+        ended = watched(asked, noise, given.max_steps, given.seconds, note, parts)
         moments += ended.looks
         if given.samples:
             with given.samples.open("a") as file:
                 file.writelines(json.dumps(moment) + "\n" for moment in ended.looks)
         print(f"{number}/{given.worlds} {ended.line()}", file=sys.stderr, flush=True)
     command = (
-        f"python -m benchmarks.priors --worlds {given.worlds} --seed {given.seed} --max-steps {given.max_steps} "
-        f"--seconds {given.seconds} --parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
+        f"python -m benchmarks.priors{f' --{given.counting}' if deciding else ''} --worlds {given.worlds} "
+        f"--seed {given.seed} --max-steps {given.max_steps} --seconds {given.seconds}"
     )
-    for name, lines in written(moments, [command, f"{given.worlds} worlds of all kinds"]).items():
-        (given.to / name).write_text(lines)
+    if deciding:
+        files = deciding.written(moments, command, given.worlds)
+    else:
+        command += f" --parts {given.parts} --noise {','.join(f'{noise:g}' for noise in given.noise)}"
+        files = written(moments, [command, f"{given.worlds} worlds of all kinds"])
+    for name, lines in files.items():
+        ((given.to or (PLANNER_FILES if deciding else KB_FILES)) / name).write_text(lines)
     return 0
 
 
@@ -128,7 +148,7 @@ def written(moments: Sequence[CountedMoment], told: Sequence[str]) -> Mapping[st
     return {
         "priors.lp": text(things, [*command, kinds], "interpretation.lp, shapes.lp and movable.lp"),
         "priors_of_whereabouts.lp": text(may_be, [*command, there], "chances.lp"),
-        "place_priors.lp": places_text(
+        "priors_of_places.lp": places_text(
             [*counted_places(places)], [*command, f"{what}, {len(places)} facts about places"]
         ),
     }
@@ -141,6 +161,54 @@ def _read(line: str) -> CountedMoment:
     return moment._replace(fits=tuple(fit._replace(fits=tuple(map(tuple, fit.fits))) for fit in moment.fits))
 
 
+class Deciding(NamedTuple):
+    """A count of what the robot chooses among: in which worlds, of what, and into which file."""
+
+    file: str
+    dealt: Callable[[int, int], Iterator[tuple[Asked, float]]]  # worlds, by their number and a seed
+    seen: Callable[[LookedAt], Iterator[Any]]
+    row: type[Any]  # of what was seen, a named tuple
+    counted: Callable[[Iterable[Any]], Iterator[Counted]]
+    whole: str  # the encoding of which the file is a part
+    worlds: str  # which worlds, in words
+
+    def written(self, moments: Sequence[Sequence[Any]], command: str, worlds: int) -> Mapping[str, str]:
+        """Return the text of the file, by its name."""
+        seen = f"{sum(map(bool, moments))} decisions, {sum(map(len, moments))} choices"
+        counted = [*self.counted(chain.from_iterable(moments))]
+        return {self.file: text(counted, [command, f"{worlds} worlds, {self.worlds}; {seen}"], self.whole)}
+
+    def noted(self, look: LookedAt) -> tuple[Any, ...]:
+        """Return what is counted of a moment."""
+        return tuple(self.seen(look))
+
+    def read(self, line: str) -> tuple[Any, ...]:
+        """Return a moment from its line of JSON."""
+        return tuple(self.row(*one) for one in json.loads(line))
+
+
+DECIDING = {
+    "walls": Deciding(
+        file="priors_of_walls.lp",
+        dealt=with_plugs,
+        seen=walls_seen,
+        row=WallSeen,
+        counted=counted_walls,
+        whole="feel.lp",
+        worlds="two of three of benchmarks.plugs, the others of all kinds",
+    ),
+    "looks": Deciding(
+        file="priors_of_looks.lp",
+        dealt=with_things,
+        seen=looks_seen,
+        row=LookSeen,
+        counted=counted_looks,
+        whole="the search for things",
+        worlds="of tasks 3, 5, 6 and 9",
+    ),
+}
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.priors", description="Count priors in random worlds.")
     parser.add_argument("--worlds", type=int, default=250, help="how many (%(default)s)")
@@ -151,9 +219,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--parts", type=int, default=6, help="into how many parts moments part a run (%(default)s)")
     parser.add_argument("--samples", type=Path, help="what was measured, a JSON line a moment; added to")
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
-    parser.add_argument(
-        "--to", type=Path, default=CHECKOUT / "kb" / "asp", help="the folder of the files (%(default)s)"
-    )
+    parser.add_argument("--to", type=Path, help="the folder of the files (kb/asp, or planner/asp)")
+    instead = parser.add_mutually_exclusive_group()
+    for name, what in (("walls", "walls that are felt"), ("looks", "looks for things")):
+        instead.add_argument(
+            f"--{name}", dest="counting", action="store_const", const=name, default="", help=f"count {what}, instead"
+        )
     return parser
 
 

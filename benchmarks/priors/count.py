@@ -12,6 +12,7 @@ from benchmarks.priors.bins import (
     EXTENT,
     JOINED,
     LEAD,
+    LOOK,
     MASS,
     MISFIT,
     NONE_MISFIT,
@@ -27,8 +28,11 @@ from benchmarks.priors.bins import (
     Bin,
     bin_of,
 )
+from benchmarks.priors.looks import LookSeen
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, TriedSeen
+from benchmarks.priors.walls import WIDTHS, WallSeen
 from benchmarks.priors.whereabouts import MeasuredSeen, PieceSeen, WhereaboutSeen
+from utak.planner.sights.walls import WallKind
 
 THOUSAND = 1000
 MAX_LEAD = 3  # squares: kb/asp/shapes.lp tells no greater lead
@@ -136,6 +140,19 @@ def counted_stretches(stretches: Iterable[MeasuredSeen]) -> Iterator[Counted]:
 def counted_squares(squares: Iterable[MeasuredSeen]) -> Iterator[Counted]:
     """Yield how many likeliest squares were those in which the robot stood, by case and share of the likelihood."""
     return _counted_by_case("counted_square", STANDING, squares)
+
+
+def counted_looks(looks: Iterable[LookSeen]) -> Iterator[Counted]:
+    """Yield how many looks of each kind would have shown a thing never seen, by the squares that they show."""
+    return _counted_by_case("counted_look", LOOK, looks)
+
+
+def counted_walls(walls: Iterable[WallSeen]) -> Iterator[Counted]:
+    """Yield in how many places of walls of each kind things of each width began."""
+    found = Counter((wall.kind, wall.width, wall.begins) for wall in walls)
+    for kind, width in product(WallKind, WIDTHS):
+        true = found[kind, width, True]
+        yield Counted("counted_wall", (kind, width), true, true + found[kind, width, False])
 
 
 def counted_pieces(pieces: Iterable[PieceSeen]) -> Iterator[Counted]:

@@ -14,7 +14,7 @@ from utak.kb.reasoning.user_rules import predicates_read, rules_reach
 from utak.kb.tracing.decisions import record_decisions
 
 SHAPES = KB_ENCODINGS / "shapes.lp"
-PLACE_PRIORS = KB_ENCODINGS / "place_priors.lp"
+PRIORS_OF_PLACES = KB_ENCODINGS / "priors_of_places.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
 TAKEN = KB_ENCODINGS / "taken.lp"
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
@@ -55,7 +55,7 @@ def counted_percent(case: str, measure: int) -> int:
 def _counted_chances() -> Mapping[str, Sequence[tuple[int, int, int]]]:
     """Return by case the counts of facts about places: from which measure to which, and how many of 1000 were true."""
     found: dict[str, list[tuple[int, int, int]]] = {}
-    for case, *numbers in encoding_facts(PLACE_PRIORS, "counted_chance", 4):
+    for case, *numbers in encoding_facts(PRIORS_OF_PLACES, "counted_chance", 4):
         least, most, share = (int(number) for number in numbers)
         found.setdefault(str(case), []).append((least, most, share))
     return found

@@ -19,8 +19,9 @@ SHARED_FILES = {
     "shapes": ("priors",),
     "movable": ("priors",),
     "chances": ("priors_of_whereabouts",),
+    "feel": ("priors_of_walls",),
 }
-COUNTED_FACTS = ("place_priors",)  # files of facts alone, which Python reads
+COUNTED_FACTS = ("priors_of_places", "priors_of_looks")  # files of facts alone, which Python reads
 SHARED_PARTS = frozenset(
     [*COUNTED_FACTS, *(name for names in SHARED_FILES.values() for name in names)]
 )  # they are no encodings by themselves

@@ -40,6 +40,7 @@ Interface = Mapping[Signature, tuple[ArgumentType, ...]]  # argument types by pr
 
 MAX_AMOUNT = 1_000_000  # the greatest count, price or length that users' rules may derive; a convention
 AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)  # a count, a length or a price
+THOUSANDTHS_ARGUMENT = integer_argument("thousandths", 0, 1000)
 NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a thing
 
 
@@ -49,8 +50,8 @@ REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT, PLACE_ARGUMENT, GOAL_AR
 PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT, SUBJECT_ARGUMENT = (  # a subject: a goal, all, robot, task, plan or look
     NAME_ARGUMENT._replace(name=name) for name in ("room", "door", "subject")
 )
-NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
-    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time")
+NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT, HALT_ARGUMENT = (
+    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time", "halt")
 )
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
@@ -125,13 +126,18 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "parameter": ((("wanted", 1), 0),),
     "neck": ((("neck", 5), 0),),
     "convex corner": ((("convex", 3), 0),),
+    "halt": ((("halt", 3), 0),),
 }
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
-TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
+TRANSIENT_NUMBERS = frozenset({"neck", "convex corner", "halt"})
 ROLE_ARGUMENT = word_argument("role", ("bounds", "wall", "thing"))  # that a region is taken for
 CASE_ARGUMENT = word_argument(
     "case",
     ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
+)
+WALL_ARGUMENTS = (  # of walls that are felt
+    word_argument("kind of wall", ("thing", "niche", "rim", "thin", "unseen", "parting", "plain")),
+    word_argument("width", ("doorway", "square")),
 )
 # By the name of an encoding: the predicates that users' rules may use there, with their argument types.
 USER_RULE_INTERFACES: Mapping[str, Interface] = {
@@ -276,7 +282,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("thing", 1): (NODE_ARGUMENT,),
         ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
-        ("goal", 1): (GOAL_ARGUMENT,),
+        **{(name, 1): (GOAL_ARGUMENT,) for name in ("goal", "missing", "unclear", "waits", "met", "unmet")},
         **{(name, 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT) for name in ("wish", "missed")},
         ("fulfils", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT),
         ("rank", 2): (MOVER_ARGUMENT, AMOUNT_ARGUMENT),
@@ -300,8 +306,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("given", 3): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("stood", 2): (REFUTATION_ARGUMENT, MOVER_ARGUMENT),
         ("shut", 2): (REFUTATION_ARGUMENT, PLAN_DOOR_ARGUMENT),
-        ("time", 1): (TIME_ARGUMENT,),
-        ("begins", 1): (TIME_ARGUMENT,),
+        **{(name, 1): (TIME_ARGUMENT,) for name in ("time", "begins", "busy", "acts", "settling")},
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
@@ -309,11 +314,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
         ("occurs", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("brought", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
-        ("busy", 1): (TIME_ARGUMENT,),
-        ("acts", 1): (TIME_ARGUMENT,),
-        ("missing", 1): (GOAL_ARGUMENT,),
-        ("unclear", 1): (GOAL_ARGUMENT,),
-        ("waits", 1): (GOAL_ARGUMENT,),
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
         ("holds", 1): (NODE_ARGUMENT,),
@@ -321,16 +321,10 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("default_price", 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT),
         ("price", 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT),
         ("left", 1): (STEP_ARGUMENT,),
-        ("settling", 1): (TIME_ARGUMENT,),
         ("settled", 2): (SUBJECT_ARGUMENT, TIME_ARGUMENT),
         ("moved", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
-        ("robot_in", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
-        ("room_before", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
-        ("needed", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
-        ("reached", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
+        **{(name, 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT) for name in ("robot_in", "room_before", "needed", "reached")},
         ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
-        ("met", 1): (GOAL_ARGUMENT,),
-        ("unmet", 1): (GOAL_ARGUMENT,),
         ("asked", 1): (PLAN_DOOR_ARGUMENT,),
         ("closed", 1): (PLAN_DOOR_ARGUMENT,),
     },
@@ -352,6 +346,12 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("do", 1): (ACTIVITY_ARGUMENT,),
         ("stage_attained", 0): (),
         ("verdict", 1): (VERDICT_ARGUMENT,),
+    },
+    "feel": {
+        ("halt", 3): (HALT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
+        ("tells", 4): (HALT_ARGUMENT, *WALL_ARGUMENTS, AMOUNT_ARGUMENT),
+        **{(name, 3): (*WALL_ARGUMENTS, THOUSANDTHS_ARGUMENT) for name in ("counted_wall", "supposed")},
+        ("feel", 1): (HALT_ARGUMENT,),
     },
 }
 # Encodings that answer questions and decide nothing in a run.
@@ -376,6 +376,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
     "walks": frozenset(USER_RULE_INTERFACES["walks"]) - {("avoid_link", 1), ("link_price", 2)},
+    "feel": frozenset(USER_RULE_INTERFACES["feel"]) - {("supposed", 3)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
 MADE_LAST = frozenset(
@@ -389,7 +390,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        **dict.fromkeys(("reconciliation", "chances", "walks", "task", "agenda"), WORLD_PREDICATES),
+        **dict.fromkeys(("reconciliation", "chances", "walks", "feel", "task", "agenda"), WORLD_PREDICATES),
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.

@@ -34,7 +34,6 @@ INTERNAL_THERE = {
     ),
     "aims": "choose/1 aim/3 besides/2 chance/2 last/1",
     "boldness": "take/1 plan/2 hopes/1 askew/1 short/1 aside/1",
-    "feel": "halt/3 tells/4 feel/1",
     "transport": "last/1 option/4 refuted/3 undecided/3 hopeless/0 try/3",
 }
 # These predicates, and those encodings.

@@ -19,7 +19,7 @@ from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, with_command
 from utak.planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from utak.planner.screen.moves import move_to, one_move_squares
-from utak.planner.screen.projection import CostMaps, dilate, indices_to_mask
+from utak.planner.screen.projection import dilate, indices_to_mask
 from utak.planner.sights.frontiers import Viewpoint
 from utak.planner.sights.passages import SAME_LINE, WallLine, passages
 from utak.planner.sights.walls import (
@@ -86,8 +86,8 @@ def walls_to_feel(turn: StageTurn) -> Bools:
 
 def feel_walls(turn: StageTurn) -> Decision | None:
     """Return the next command to feel walls that may be things; None when none is left that can be reached."""
-    cost_maps = turn.situation.cost_maps
-    return turn.look_if_reached(choose_halt(feeling_places(cost_maps, feeling_scope(turn)), cost_maps))
+    places = feeling_places(turn.situation.cost_maps, feeling_scope(turn))
+    return turn.look_if_reached(choose_halt(places, turn.situation))
 
 
 def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
@@ -99,37 +99,41 @@ def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
     """Return the next command to feel how far an object goes on along the wall in which it stands; None when known."""
     if node.moved or node.colour is None:
         return None
-    cost_maps = turn.situation.cost_maps
     near = dilate(turn.situation.model.mask(node.patch), 2).ravel()
-    places = [p for p in feeling_places(cost_maps) if WallKind.THING in p.squares and near[p.square]]
-    return turn.look_if_reached(choose_halt(places, cost_maps))
+    places = [p for p in feeling_places(turn.situation.cost_maps) if WallKind.THING in p.squares and near[p.square]]
+    return turn.look_if_reached(choose_halt(places, turn.situation))
 
 
-def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | None:
+def choose_halt(places: Sequence[FeelingPlace], situation: Situation) -> Subgoal | None:
     """Choose the square at which walls are felt next, by planner/asp/feel.lp; None when nothing is left to feel."""
     if not places:
         return None
-    halts = np.array([place.square for place in places])
+    cost_maps, halts = situation.cost_maps, np.array([place.square for place in places])
     ways = cost_maps.far(halts)
     straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(halts, cost_maps.floor.shape)).ravel()
-    offered: set[int] = set()
-    order = np.argsort(ways, kind="stable").tolist()
-    for kind in WallKind:
-        of_kind = [n for n in order if places[n].squares[kind] or places[n].doorways[kind]]
-        full = [n for n in of_kind if places[n].doorways[kind] == max(places[m].doorways[kind] for m in of_kind)]
-        offered.update(of_kind[:MAX_HALTS_OF_KIND], full[:MAX_HALTS_OF_KIND])
     facts = []
-    for number in sorted(offered):
+    for number in sorted(_offered(places, np.argsort(ways, kind="stable").tolist())):
         place = places[number]
         moves = 1 if straight[place.square] else 2
         facts.append(f"halt({number},{round(TENTHS_PER_SQUARE * float(ways[number]))},{moves})")
         for size, told in (("doorway", place.doorways), ("square", place.squares)):
             facts += [f"tells({number},{kind},{size},{told[kind]})" for kind in WallKind if told[kind]]
-    answer = solve([PLANNER_ASP / "feel.lp"], facts)
+    facts += situation.facts_for_rules("feel")
+    answer = solve([PLANNER_ASP / "feel.lp", *situation.rules], facts)
     if not answer:
         return None
     chosen = places[answer[0].arguments[0].number]
     return Subgoal(SubgoalKind.FEEL, np.array([chosen.square]), FEELING_REASON)
+
+
+def _offered(places: Sequence[FeelingPlace], order: Sequence[int]) -> set[int]:
+    """Return the numbers of the places that are offered. order : all numbers, the nearest first."""
+    offered: set[int] = set()
+    for kind in WallKind:
+        of_kind = [n for n in order if places[n].squares[kind] or places[n].doorways[kind]]
+        full = [n for n in of_kind if places[n].doorways[kind] == max(places[m].doorways[kind] for m in of_kind)]
+        offered.update(of_kind[:MAX_HALTS_OF_KIND], full[:MAX_HALTS_OF_KIND])
+    return offered
 
 
 class Passages:

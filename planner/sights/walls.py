@@ -8,7 +8,7 @@ Masks are (rows, columns) bool on the arrays of the view, row 0 in the south.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -41,8 +41,7 @@ class WallKind(StrEnum):
     NICHE = "niche"  # it is the back of a niche, as a recessed thing leaves it
     RIM = "rim"  # behind it the wall has a niche or sticks out, as a thing leaves it on the far side
     THIN = "thin"  # floor that is not reached was seen behind it, at most MAX_THIN_WALL squares away
-    THICK = "thick"  # likewise, at most MAX_THICK_WALL squares away
-    UNSEEN = "unseen"  # squares that were never seen lie behind it, at most MAX_THICK_WALL squares away
+    UNSEEN = "unseen"  # squares that were never seen lie behind it, or such floor, at most MAX_THICK_WALL squares away
     PARTING = "parting"  # behind it lies floor that is reached already
     PLAIN = "plain"  # nothing but wall was seen behind it
 
@@ -114,12 +113,11 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
         front = unfelt & shift_mask(ground, *step)
         behind = _behind(front, space, reached, seen, step)
         back = (-step[0], -step[1])
-        rim = _cast(niches[back] | sticking, back, MAX_THIN_WALL) & (behind[WallKind.THIN] | behind[WallKind.THICK])
         found = {
             **behind,
             WallKind.THING: front & dilate(things, 1) & ~behind[WallKind.PARTING],
             WallKind.NICHE: front & niches[step] & ~behind[WallKind.PARTING],
-            WallKind.RIM: front & rim,
+            WallKind.RIM: front & _cast(niches[back] | sticking, back, MAX_THIN_WALL) & ~behind[WallKind.PARTING],
         }
         for kind, mask in found.items():
             kinds[kind] |= mask
@@ -135,18 +133,12 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
 def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list[FeelingPlace]:
     """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none."""
     model, floor = cost_maps.model, cost_maps.floor
-    kinds = walls_in_question(model, floor, scope)
-    number = np.zeros(floor.shape, np.int64)
-    names = list(WallKind)
-    for rank, kind in enumerate(names, 1):
-        number[kinds[kind]] = rank
     offsets = tuple(model.frame.directions())
     places: dict[int, FeelingPlace] = {}
     stand = floor & ~cost_maps.looked_from
     if scope.allowed is not None:
         stand &= scope.allowed
-    for stretch in _stretches(number > 0):
-        kind = names[min(int(number[square]) for square in stretch) - 1]
+    for kind, stretch in stretches_in_question(walls_in_question(model, floor, scope)):
         about = {(row - dy, column - dx) for row, column in stretch for dx, dy in offsets}
         for row, column in about:
             if 0 <= row < floor.shape[0] and 0 <= column < floor.shape[1] and stand[row, column]:
@@ -154,6 +146,24 @@ def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list
                 place = places.setdefault(index, FeelingPlace(index, Counter(), Counter()))
                 (place.squares if len(stretch) == 1 else place.doorways)[kind] += 1
     return [places[index] for index in sorted(places)]
+
+
+def stretches_in_question(kinds: Mapping[WallKind, Bools]) -> Iterator[tuple[WallKind, Sequence[tuple[int, int]]]]:
+    """Yield where things may begin in some walls in question, each with the likeliest kind of its squares.
+
+    These are each square (row, column) alone, and each DOORWAY_WIDTH squares in a row, the southernmost or westernmost
+    first.
+    """
+    names, number = list(kinds), np.zeros_like(next(iter(kinds.values())), np.int64)
+    high, wide = number.shape
+    for rank, mask in enumerate(kinds.values(), 1):
+        number[mask] = rank
+    for row, column in np.argwhere(number).tolist():
+        ahead = [[(row + dy * n, column + dx * n) for n in range(DOORWAY_WIDTH)] for dy, dx in ((0, 1), (1, 0))]
+        for stretch in ([(row, column)], *ahead):
+            north, east = stretch[-1]
+            if north < high and east < wide and all(ranks := [int(number[square]) for square in stretch]):
+                yield names[min(ranks) - 1], stretch
 
 
 def _ground(model: WorldModel) -> Bools:
@@ -203,9 +213,9 @@ def _behind(front: Bools, space: Bools, reached: Bools, seen: Bools, step: Squar
         ground, new, solid = (shift_mask(mask, *back) for mask in (ground, new, solid))
         unseen = ~(ground | new | solid)  # what lies beyond the arrays was never seen
         kinds[WallKind.PARTING] |= left & ground
-        thickness = WallKind.THIN if depth <= MAX_THIN_WALL else WallKind.THICK
-        kinds[thickness if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & new
-        kinds[WallKind.UNSEEN if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & unseen
+        beyond = WallKind.UNSEEN if depth <= MAX_THICK_WALL else WallKind.PLAIN
+        kinds[WallKind.THIN if depth <= MAX_THIN_WALL else beyond] |= left & new
+        kinds[beyond] |= left & unseen
         left &= ~(ground | new | unseen)
         if not left.any():
             break
@@ -243,14 +253,3 @@ def _run_lengths(mask: Bools) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]
     for row, start, stop in runs_along_rows(mask).each():
         lengths[row, start:stop] = stop - start
     return lengths
-
-
-def _stretches(mask: Bools) -> Iterator[list[tuple[int, int]]]:
-    """Yield each square of a mask alone, and each DOORWAY_WIDTH squares of it in a row; squares are (row, column)."""
-    for row, column in np.argwhere(mask).tolist():
-        yield [(row, column)]
-        for dy, dx in ((0, 1), (1, 0)):
-            stretch = [(row + n * dy, column + n * dx) for n in range(DOORWAY_WIDTH)]
-            end = stretch[-1]
-            if end[0] < mask.shape[0] and end[1] < mask.shape[1] and all(mask[square] for square in stretch):
-                yield stretch

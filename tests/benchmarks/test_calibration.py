@@ -17,6 +17,7 @@ from benchmarks.calibration.figures import NO_CLASS, RECTANGLE, class_of
 from benchmarks.calibration.moments import Moment
 from benchmarks.calibration.necks import door_necks
 from benchmarks.calibration.picture import picture
+from benchmarks.calibration.runs import LookedAt, watched
 from benchmarks.calibration.statements import HeldStatement, statements
 from benchmarks.calibration.table import Held, as_json, reliabilities, table
 from benchmarks.calibration.truth import TableTruth
@@ -25,8 +26,9 @@ from benchmarks.claims.asked import Asked, all_kinds
 from benchmarks.harness.beliefs import TableFrame
 from benchmarks.priors import __main__ as priors
 from benchmarks.priors.bins import ANY, EXTENT, MASS, PLACES, WHOLE, Bin, bin_of, bins
-from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_places
+from benchmarks.priors.count import Counted, counted_classes, counted_kinds, counted_places, counted_walls
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen
+from benchmarks.priors.walls import walls_seen, with_plugs
 from benchmarks.worlds.furniture import OUTLINE_SHAPES, outline
 from utak.kb.localisation.standing import Standing
 from utak.kb.perception.frame import Frame
@@ -307,6 +309,21 @@ def test_rates_follow_laplace_and_are_never_certain() -> None:
     ]
 
 
+def test_in_walls_that_are_felt_things_begin_once_where_one_fills_a_doorway() -> None:
+    """In a closed room none begins; with a thing in the doorway one does, at the first decision where to feel."""
+
+    def began(look: LookedAt) -> tuple[int, int]:
+        """Return how many places of walls were offered, and how many of them count as beginnings."""
+        rows = [*counted_walls(walls_seen(look))]
+        return sum(row.of for row in rows), sum(row.true for row in rows)
+
+    asked = [world for world, noise in with_plugs(15, 3) if not noise]
+    assert [world.name for world in asked[:2]] == ["filled_flush:1:3", "filled_flush:2:3"] and len(asked) == 15
+    for world, number in ((asked[0], 1), (Asked("filled_closed", 3, 1), 0)):
+        looks = watched(world, 0.0, 12, 60, began, 12).looks
+        assert next(true for places, true in looks if places) == number
+
+
 def test_regions_and_classes_are_counted_by_their_bins() -> None:
     regions = [
         RegionSeen("undecided", 3, 40, "o1", "object"),
@@ -348,7 +365,7 @@ def test_a_world_is_run_compared_and_counted(tmp_path: Path, capsys: pytest.Capt
         assert priors.main([*few, *more, "--to", str(folder)]) == 0
     assert {file.name: file.read_text() for file in once.iterdir()} == {f.name: f.read_text() for f in again.iterdir()}
     counted = (
-        ("place_priors", "counted_chance("),
+        ("priors_of_places", "counted_chance("),
         ("priors", "counted_solid("),
         ("priors_of_whereabouts", "counted_plug("),
     )

@@ -17,7 +17,7 @@ from utak.kb.language.terms import SourceSpan
 from utak.kb.task.task import Parameter, Task
 from utak.planner.carrying.open_facts import nearest_open_fact
 from utak.planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
-from utak.planner.sights.walls import feeling_places
+from utak.planner.sights.walls import WallKind, feeling_places
 from utak.planner.stages import Stage
 from utak.simulator.run.session import Result, Session
 from utak.simulator.scenario.scenario import read_scenario
@@ -41,7 +41,7 @@ def test_walls_are_felt_until_none_is_left() -> None:
     model = known_model(ROOM)
     assert isinstance(getattr(feel_walls(turn_of(UTAK, situation_of(model))), "command", None), Move)
     assert feel_walls(turn_of(UTAK, situation_of(all_felt(model)))) is None
-    assert choose_halt([], situation_of(model).cost_maps) is None
+    assert choose_halt([], situation_of(model)) is None
 
 
 def test_where_no_door_is_it_does_not_matter_how_many_things_there_are() -> None:
@@ -68,13 +68,26 @@ def test_whether_goals_for_one_thing_can_hold_at_once_depends_on_no_other_thing_
     assert feeling_scope(replace(turn_of(beside, named), agreeing=True)).things
 
 
+def test_rules_say_in_which_walls_things_are_supposed(tmp_path: Path) -> None:
+    """Without the rule a thin wall is felt, behind which floor was seen; with it, one behind which nothing was."""
+    rows = ["b" * 22, *["b" + "." * 10 + "b" + "." * 9 + "b"] * 5, "b..U" + "." * 7 + "b" + "." * 9 + "b", "b" * 22]
+    situation, rules = situation_of(known_model(rows)), tmp_path / "rules.lp"
+    rules.write_text("supposed(K, S, 0) :- counted_wall(K, S, _), K != unseen, not held(_).")
+    places, told = feeling_places(situation.cost_maps), []
+    for given in ((), (rules,)):
+        halt = choose_halt(places, replace(situation, rules=given))
+        assert halt is not None
+        told.append(next(set(place.squares) for place in places if place.square == halt.squares[0]))
+    assert told == [{WallKind.THIN}, {WallKind.UNSEEN}]
+
+
 def test_a_room_is_felt_with_few_halts() -> None:
     """A robot that halts where it is told, and feels verge there, has felt the 38 squares of the walls soon."""
     model, halts = known_model(ROOM), 0
     while True:
         situation = situation_of(model)
         scope = feeling_scope(turn_of(UTAK, situation))
-        halt = choose_halt(feeling_places(situation.cost_maps, scope), situation.cost_maps)
+        halt = choose_halt(feeling_places(situation.cost_maps, scope), situation)
         if halt is None:
             break
         row, column = divmod(int(halt.squares[0]), model.labels.shape[1])
