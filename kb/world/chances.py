@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats
 from utak.geometry.raster.components import components, with_edge_neighbours
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
@@ -19,7 +20,7 @@ from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.perception.interpretation import LONGEST_OBJECT, counted_percent
 from utak.kb.perception.regions import extents
 from utak.kb.world.corners import Corner
-from utak.kb.world.doors import MAX_UNWALLED
+from utak.kb.world.doors import ENCODED_DOOR_RATIO, MAX_UNWALLED, jamb
 from utak.kb.world.model import ROOT_NODE, VERGE_NODE, Node, WorldModel
 from utak.kb.world.rooms import NO_ROOM, Door, Rooms
 
@@ -263,13 +264,35 @@ class Chances:
 
     # ---- Doors and corners ----
 
-    def of_door(self, door: Door) -> int:
-        """Return the percent of belief in a door; never 100, for whether a neck is a door is what people call so."""
+    def of_door(self, door: Door, widths: Widths) -> int:
+        """Return the percent of belief in a door; 100 only when what is seen of both sides leaves no doubt."""
+        certain = self.is_sure and self._is_open(door) and self._is_wide(door, widths.most) and self._is_walled(door)
+        if door.confidence == 100 and certain:
+            return 100
         if not door.joins:
             return self._rate("door_alone", int(door.width))
         smaller = min(int(np.count_nonzero(self.rooms.labels == side)) for side in door.sides)
         walled = "door_walled" if door.confidence > MAX_UNWALLED else "door_unwalled"
         return self._rate("door_anew" if self.model.anew else walled, smaller)
+
+    def _is_open(self, door: Door) -> bool:
+        """Return whether all squares along the line of a door are free beyond doubt."""
+        return all(self._is(self._surely_free, x, y) for x, y in _places_along(door.a, door.b))
+
+    def _is_wide(self, door: Door, width: float) -> bool:
+        """Return whether the floor seen on both sides of a door is wide enough for a door of some width."""
+        one, other = (float(self._clearance[self.rooms.labels == side].max(initial=0.0)) for side in door.sides)
+        return door.joins and 2 * min(one, other) >= ENCODED_DOOR_RATIO * width
+
+    def _is_walled(self, door: Door) -> bool:
+        """Return whether verge bounds a door on both ends beyond doubt."""
+        return all(len(jamb(self._sure_verge, end)[0]) > 0 for end in (door.a, door.b))
+
+    @cached_property
+    def _clearance(self) -> Floats:
+        """The distance of each square that is free beyond doubt to the nearest one that is not."""
+        clearance: Floats = Screen(self._surely_free).clearance
+        return clearance
 
     def widths(self, door: Door) -> Widths:
         """Return between what bounds the width of a door lies, wherever in their squares its walls end."""

@@ -298,7 +298,8 @@ def place_facts(model: WorldModel, places: Places, chances: Chances) -> Iterator
 
 def _door_facts(door: Door, model: WorldModel, chances: Chances) -> Iterator[str]:
     """Yield the facts of a door, without full stops."""
-    widths, share = chances.widths(door), chances.of_door(door)
+    widths = chances.widths(door)
+    share = chances.of_door(door, widths)
     yield f"door({door.name},{share})"
     yield f"width({door.name},{hundredths(door.width)})"
     least, most = math.floor(FACT_UNITS_PER_SQUARE * widths.least), math.ceil(FACT_UNITS_PER_SQUARE * widths.most)

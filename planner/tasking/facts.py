@@ -187,7 +187,9 @@ def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
     yield from (f"relief({door},{saved})" for door, saved in situation.door_reliefs.items() if saved)
     if ("door", 2) in predicates_read("task", situation.rules):
         chances = Chances(situation.model, situation.rooms)
-        yield from (f"door({door.name},{chances.of_door(door)})" for door in situation.rooms.doors)
+        yield from (
+            f"door({door.name},{chances.of_door(door, chances.widths(door))})" for door in situation.rooms.doors
+        )
         yield from (f"door({door.name},0)" for door in situation.possible_doors)
     yield from situation.facts_for_rules("task")
 

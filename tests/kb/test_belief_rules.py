@@ -27,7 +27,7 @@ utak("POINT (32.5 10.5)", 0)."""
 )
 TWO_SQUARES = """table(40, 20). verge("POLYGON ((0 0, 0 20, 40 20, 40 0, 0 0), (2 2, 38 2, 38 18, 2 18, 2 2))").
 object(a, c, "POLYGON ((9 5, 12 5, 12 8, 9 8, 9 5))"). object(b, d, "POLYGON ((19 10, 22 10, 22 13, 19 13, 19 10))").
-utak("POINT (13.5 9.5)", 0)."""
+utak("POINT (16.5 9.5)", 0)."""
 
 
 def pair(number: int, scenario: utak.Scenario, max_steps: int) -> tuple[utak.Episode, utak.Episode]:
@@ -139,8 +139,9 @@ def test_there_is_one_square_at_most(tmp_path: Path) -> None:
         chances.append({fact: least for fact, least, _, _ in worlds.open})
         assert worlds.worlds
     squares = "shape(o1,square)", "shape(o2,square)"
-    assert all(chances[0][square] == pytest.approx(0.9, abs=0.01) for square in squares)
-    assert all(chances[1][square] < 0.5 for square in squares)
+    assert all(chances[0][square] == pytest.approx(0.92, abs=0.03) for square in squares)
+    assert sum(chances[1][square] for square in squares) <= 1.0
+    assert all(chances[1][square] < 0.6 for square in squares)
 
 
 def test_what_is_hardly_a_thing_is_none() -> None:
