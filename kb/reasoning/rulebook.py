@@ -199,9 +199,11 @@ class Rulebook:
     def _taking_part(self, encoding: str) -> tuple[Statement, ...]:
         """Return the statements that take part in an encoding."""
         known, world = PREDICATES_BY_ENCODING[encoding], WORLD_FACTS_THERE.get(encoding, frozenset())
-        found = self._applicable(known | world, READ_ONLY_THERE.get(encoding, frozenset()) | world)
+        read_only = READ_ONLY_THERE.get(encoding, frozenset())
+        found = self._applicable(known | world, read_only | world)
         if not world or encoding == "task":
             return found
+        world |= {signature for signature in read_only if signature in BELIEF_PREDICATES}
         of_world = self._applicable(world, world)  # with what they define
         return tuple(one for one in found if one.heads or one not in of_world)
 
