@@ -30,7 +30,7 @@ def choose(situation: ObservedSituation) -> Explanation:
         facts |= {
             "unchanged": np.array_equal(situation.ranges, state.observations[-1].ranges),
             "clear": sum(contact.chance for contact in situation.contacts) <= MAX_CLEAR_CHANCE,
-            "uneven": insets is not None and any(insets.believed),
+            "uneven": insets is not None and insets.uneven,
         }
     return cheapest(found, [fact for fact, holds in facts.items() if holds])
 

@@ -36,6 +36,11 @@ class SubcellExtent(NamedTuple):
         return (*_believed(self.least[:2], self.most[:2]), *_believed(self.least[2:], self.most[2:]))
 
     @property
+    def uneven(self) -> bool:
+        """Whether a side is believed not to fill the squares in which the object was seen."""
+        return any(self.believed)
+
+    @property
     def short(self) -> SideValues:
         """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))

@@ -141,8 +141,7 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     # may end there rotated.
     close = replace(end, slack=APPROACH_GAP)
     if not is_off_quarter_turn(node):
-        is_uneven = node.insets is not None and any(node.insets.believed)
-        if node.inexact and not is_uneven:  # who does not fill its squares on one side may not on another
+        if node.inexact and not (node.insets and node.insets.uneven):  # what is uneven on one side may be on another
             return Placement({side: close}, holds=meets_end(close, shape), loose={side: end})
         goals = [_pressed(end), replace(close, press=APPROACH_GAP), replace(end, slack=CONTACT_GAP, press=1.0)]
         goal = next((one for one in goals if not meets_end(one, shape)), goals[-1])

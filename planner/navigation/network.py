@@ -1,7 +1,7 @@
 """The pathgraph between two squares: its links as facts know them, and the shortest ways over them.
 
 A link is a chain of the pathgraph, or the part of one between the places where start and goal meet the skeleton. Dead
-ends that lead to neither are left out, for no way over them passes no junction twice.
+ends that lead to neither are left out: who walks into one comes back to the junction that it begins at.
 """
 
 import heapq

@@ -25,7 +25,7 @@ from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.screen.sweeps import squares_along
 
 WALKS_ENCODING = PLANNER_ASP / "walks.lp"
-MAX_TIGHT_WAYS = 6  # shortest ways over links that are pulled tight before the choice (benchmarks.walks)
+MAX_TIGHT_WAYS = 6  # shortest ways over links that are pulled tight before the choice: bounds its time; by trial
 MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
@@ -111,7 +111,7 @@ def walks_along(routes: Sequence[PlannedRoute]) -> Walks:
 def choose_walk(
     walks: Walks, cost_maps: CostMaps, before: frozenset[Square], doors: Sequence[Door], rules: WalkRules
 ) -> PlannedRoute | None:
-    """Choose a walk, by planner/asp/walks.lp; None when every way leads through a forbidden door or is refused."""
+    """Choose a walk, by planner/asp/walks.lp; None when every way leads through a forbidden door."""
     model = cost_maps.model
     facts = [f"begins({walks.ends[0]})", f"ends({walks.ends[1]})"]
     facts += [f"not_through({door})" for door in sorted(rules.forbidden)]
