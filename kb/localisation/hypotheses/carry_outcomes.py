@@ -13,6 +13,7 @@ import numpy as np
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.localisation.hypotheses.frames import Position
+from utak.kb.localisation.hypotheses.walk_outcomes import observation_places
 from utak.kb.objects.held_object import Square
 from utak.kb.objects.subcell_extent import SubcellExtent
 
@@ -82,6 +83,11 @@ def partial_outcome(
     distance = motion_length(place, polygon, motion) * (1.0 - fraction)
     outcome = _outcome("blocked", place, polygon, motion.part(fraction), distance)
     return outcome._replace(contact_squares=contact_squares)
+
+
+def observed_from(outcome: CarryOutcome) -> list[CarryOutcome]:
+    """Return an outcome once for each place from which the observation may be made after it."""
+    return [outcome._replace(place=view) for view in observation_places(outcome.place)]
 
 
 def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, Any]:

@@ -21,6 +21,7 @@ from utak.kb.localisation.hypotheses.carry_outcomes import (
     END_SPACING,
     CarryOutcome,
     blocked_by_known,
+    observed_from,
     other_outcomes,
     predicted_outcome,
 )
@@ -332,8 +333,11 @@ def residual_at(situation: ObservedSituation, place: Position, outcome: CarryOut
 
 def explained_by(situation: ObservedSituation, outcome: CarryOutcome) -> Explanation:
     """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
-    residual = residual_at(situation, outcome.place, outcome)
-    return Explanation(outcome.how, outcome.place, situation.state.frame, residual, outcome.distance, outcome)
+    views = observed_from(outcome)
+    residual, seen = min(
+        ((residual_at(situation, view.place, view), view) for view in views), key=lambda found: found[0]
+    )
+    return Explanation(seen.how, seen.place, situation.state.frame, residual, seen.distance, seen)
 
 
 def count_clashes(

@@ -5,14 +5,14 @@ pressed against something known goes further than its squares would let it.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from utak.geometry.motion.se2 import Translate
-from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, blocked_by_known
+from utak.kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, blocked_by_known, observed_from
 from utak.kb.localisation.hypotheses.contacts import NO_SQUARES
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import FieldRanges, Position
@@ -20,7 +20,7 @@ from utak.kb.localisation.known.situation import ObservedSituation, count_clashe
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject
-from utak.kb.objects.subcell_extent import SubcellExtent, as_sides, inset_change
+from utak.kb.objects.subcell_extent import SubcellExtent, as_sides
 
 
 def propose(situation: ObservedSituation) -> list[Explanation]:
@@ -45,6 +45,11 @@ def propose(situation: ObservedSituation) -> list[Explanation]:
 
 def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
     """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it."""
+    return held.told(_agreement(state, held, ranges, place))
+
+
+def _agreement(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> Callable[[Any], bool]:
+    """Return a function that returns whether an observation at `place` agrees with an exact outline of an object."""
     others = state.others(held)
     floor = state.occupancy.supposing(patch_of_polygon(held.polygon).squares())
 
@@ -52,7 +57,7 @@ def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, p
         lying = replace(held, polygon=outline, slack=0.0, full=NO_SQUARES, empty=NO_SQUARES)
         return not count_clashes(state.frame, floor, [*others, lying], place, ranges)
 
-    return held.told(agrees)
+    return agrees
 
 
 def _pressed(situation: ObservedSituation) -> Iterator[CarryOutcome]:
@@ -62,7 +67,7 @@ def _pressed(situation: ObservedSituation) -> Iterator[CarryOutcome]:
         return
     ahead = (motion.dx < 0, motion.dx > 0, motion.dy < 0, motion.dy > 0)
     for step in range(math.ceil(1 / END_SPACING)):
-        low, high = step * END_SPACING, (step + 1) * END_SPACING
+        low, high = max(step * END_SPACING, COMMAND_ROUNDING), (step + 1) * END_SPACING
         least = as_sides(max(side, low) if led else side for side, led in zip(insets.least, ahead, strict=True))
         most = as_sides(min(side, high) if led else side for side, led in zip(insets.most, ahead, strict=True))
         if all(few < many for few, many in zip(least, most, strict=True)):
@@ -79,9 +84,8 @@ def _end_against_known(situation: ObservedSituation, insets: SubcellExtent) -> C
     end = blocked_by_known(state.place, less.polygon, situation.motion, situation.obstructions.known)
     if end is None:
         return None
-    told = refined_extent(state, less.moved(end.polygon, less.slack), situation.ranges, end.place)
-    if told is None or told.insets is None:
-        return None
-    if max(map(abs, inset_change(told.insets, insets))) < COMMAND_ROUNDING:
-        return end._replace(polygon=told.polygon, insets=told.insets)
-    return _end_against_known(situation, told.insets)  # where it is stopped if its sides lie there
+    lying = less.moved(end.polygon, less.slack)
+    for view in observed_from(end):
+        if _agreement(state, lying, situation.ranges, view.place)(end.polygon):
+            return view._replace(insets=insets)
+    return None
