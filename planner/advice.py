@@ -22,6 +22,7 @@ class Act:
     # The same push in squares, map frame, when no plan asks for it; None for commands of a plan. The plan executor must
     # be told when such a command is given (PlanExecutor.depart).
     unplanned_push: Translate | None = None
+    steps: tuple[str, ...] = ()  # the steps of the robot that it begins (planner.steps); () for its own alone
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class Go:
     square: SquareIndices  # one flat index (row * columns + column) into the view's arrays, (1,)
     place: XY  # the point (x, y) at which to halt, in squares, map frame
     why: str  # the reason, in words
+    steps: tuple[str, ...] = ()  # the steps of the robot, that to the square first; () for that one alone
 
 
 @dataclass(frozen=True)

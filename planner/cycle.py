@@ -19,6 +19,7 @@ from utak.kb.world.facts import Places, belief
 from utak.planner.agenda.decider import Decider
 from utak.planner.decision import Decision, StepReport, TaskVerdict, Verdict
 from utak.planner.journal import Journal
+from utak.planner.steps import RECOVERY, step_of_command
 
 
 @dataclass(frozen=True)
@@ -180,9 +181,15 @@ class Robot:
 
     def _planned_facts(self) -> tuple[str, ...]:
         """Return the task plan that is followed, as facts; or which goals none attains, and what was refuted."""
-        plan, attempt = self.decider.plan, self.decider.attempt
-        if plan is not None and self.decision.command is not None:
-            return plan.facts
+        plan, attempt, command = self.decider.plan, self.decider.attempt, self.decision.command
+        if command is not None:
+            steps = self.decision.steps or (step_of_command(command, self.model),)
+            facts = (
+                plan.facts
+                if plan is not None and plan.errands
+                else (f"plan(0,{RECOVERY if self._must_restart else self.decider.step})",)
+            )
+            return (*facts, *(f"step({number},{step})" for number, step in enumerate(steps)))
         return attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
 
     def _test(self) -> None:

@@ -46,6 +46,8 @@ class Decision:
     # The place (x, y) that the verdict is about, in squares, view frame (that of the arrays of the view, x = column, y
     # = row); None for no such place
     near: tuple[float, float] | None = None
+    # The steps of the robot with which the plan goes on, the command's own first (planner.steps); () for that one alone
+    steps: tuple[str, ...] = ()
     # What proves the verdict `impossible`, in words, a clause each; that verdict is never given without
     proof: tuple[str, ...] = ()
 

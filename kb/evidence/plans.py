@@ -8,7 +8,7 @@ from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.goal_words import ROBOT
-from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_STEPS
+from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_WORDS
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.stated_plan import circumstance_in_words, stated_plan
 
@@ -120,7 +120,7 @@ def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Itera
     """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it."""
     facts = beliefs.record.steps[step].facts
     action, arguments = atom_parts(planned)
-    if action in SETTLING_STEPS:
+    if action in SETTLING_WORDS:
         yield from _refutations_of_goal(beliefs, arguments[0], step)
         return
     thing = _brought(planned)

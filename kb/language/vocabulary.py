@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
+from utak.kb.body import DIRECTIONS
 from utak.kb.language.arguments import (
     COLOUR_ARGUMENT,
     NAME_ARGUMENT,
@@ -224,14 +225,32 @@ SETTLING_STEPS = {  # with what each does, in words; {} is what it settles
     "feel": "walls are felt that may be things, for {}",
     "bare": "what stands before walls that were never felt is moved away, for {}",
 }
+# Those of the agenda besides (planner/asp/agenda.lp), where no task plan can be made or none is left.
+AGENDA_STEPS = {
+    "confirm": "it is made sure that what seems to hold does",
+    "recover": "what is held is put down, for the robot does not know where it is",
+}
+SETTLING_WORDS = {**SETTLING_STEPS, **AGENDA_STEPS}
 RESUMED_STEPS = ("make_way", "try", "feel")  # those that are gone on with in later decisions, before anything else
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "arrive": (PLANNED_PLACE_ARGUMENT,),
-    **dict.fromkeys(SETTLING_STEPS, (PLAN_SUBJECT_ARGUMENT,)),
+    **dict.fromkeys(SETTLING_WORDS, (PLAN_SUBJECT_ARGUMENT,)),
 }
+# The steps of the robot itself, of which each command is one (planner.steps), with each in words.
+ANY_SIDE = "any"  # the side from which a thing is grasped where no direction surely names it yet
+ROBOT_STEPS: Mapping[str, tuple[tuple[ArgumentType, ...], str]] = {
+    "go": ((LENGTH_ARGUMENT, LENGTH_ARGUMENT), "the robot goes to POINT ({} {})"),
+    "look": ((LENGTH_ARGUMENT, LENGTH_ARGUMENT), "it looks from POINT ({} {})"),
+    "feel": ((LENGTH_ARGUMENT, LENGTH_ARGUMENT), "it feels what is beside POINT ({} {})"),
+    "grasp": ((OBJECT_ARGUMENT, word_argument("direction", (*DIRECTIONS, ANY_SIDE))), "{} is grasped, to the {}"),
+    "push": ((OBJECT_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), "{} is pushed by ({} {})"),
+    "turn": ((OBJECT_ARGUMENT, LENGTH_ARGUMENT), "{} is turned by {} degrees"),
+    "release": ((OBJECT_ARGUMENT,), "{} is released"),
+}
+ROBOT_STEP_ARGUMENT = fact_argument("a step of the robot", {name: types for name, (types, _) in ROBOT_STEPS.items()})
 PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
 # The circumstances on which a refutation rests.
 CIRCUMSTANCES: Vocabulary = {
@@ -246,6 +265,7 @@ PLAN_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("means", 2): BeliefPredicate((GOAL_NAME_ARGUMENT, TASK_GOAL_ARGUMENT), Openness.NEVER),
     ("unmet", 1): BeliefPredicate((GOAL_NAME_ARGUMENT,), Openness.NEVER),
     ("plan", 2): BeliefPredicate((COUNT_ARGUMENT, PLAN_STEP_ARGUMENT), Openness.NEVER),
+    ("step", 2): BeliefPredicate((COUNT_ARGUMENT, ROBOT_STEP_ARGUMENT), Openness.NEVER),
     ("serves", 2): BeliefPredicate((COUNT_ARGUMENT, GOAL_NAME_ARGUMENT), Openness.NEVER),
     ("passes", 2): BeliefPredicate((COUNT_ARGUMENT, DOOR_ARGUMENT), Openness.NEVER),
     ("takes", 2): BeliefPredicate((COUNT_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),

@@ -4,10 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from utak.kb.language.atoms import atom_parts
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import parse_facts
 from utak.kb.language.source_text import source_from_bytes
-from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_STEPS, check_facts
+from utak.kb.language.vocabulary import LENGTH_ARGUMENT, PLAN_PREDICATES, ROBOT_STEPS, SETTLING_WORDS, check_facts
 
 PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 STUCK_WORDS = {  # what the robot may be stuck with beside goals, in words; goals keep their names
@@ -64,15 +65,15 @@ class PlanStep(NamedTuple):
     @property
     def settles(self) -> bool:
         """Whether it settles something that is open, and brings nothing anywhere."""
-        return self.step.partition("(")[0] in SETTLING_STEPS
+        return self.step.partition("(")[0] in SETTLING_WORDS
 
     @property
     def words(self) -> str:
         """The step in words."""
         name, _, rest = self.step.partition("(")
         subject, _, place = rest.removesuffix(")").partition(",")
-        if name in SETTLING_STEPS:
-            return SETTLING_STEPS[name].format(STUCK_WORDS.get(subject, subject))
+        if name in SETTLING_WORDS:
+            return SETTLING_WORDS[name].format(STUCK_WORDS.get(subject, subject))
         goals = f"to where {' and '.join(self.serves)} holds" if self.serves else f"to {place or subject}"
         if name == "arrive":
             return f"the robot goes {goals}"
@@ -107,11 +108,14 @@ class StatedPlan:
     least: int | None = None
     # Whether the search ended with it; else it is the best one that was found up to the bound on rounds
     proved: bool = False
+    # The steps of the robot itself with which the present step goes on; the first one is that of the next command
+    robot: tuple[str, ...] = ()
 
     @property
     def found(self) -> bool:
         """Whether there is a plan that attains all goals."""
-        return self.cost is not None or (bool(self.steps) and not self.unmet)
+        begun = bool(self.steps) and not self.steps[0].settles
+        return self.cost is not None or (begun and not self.unmet)
 
     @property
     def gap(self) -> int | None:
@@ -141,7 +145,13 @@ class StatedPlan:
             yield "no step is left" if self.found else "no plan that was found attains all goals"
         elif not self.found:
             yield "no plan that was found attains all goals yet; what is open is settled first"
-        yield from (step.line for step in self.steps)
+        for step in self.steps:
+            yield step.line
+            if step.number == 0:
+                yield from (
+                    f"    {'>' if not number else ' '} {robot_step_in_words(one)}"
+                    for number, one in enumerate(self.robot)
+                )
         if self.cost_words:
             yield f"cost: {self.cost_words}" if self.cost else self.cost_words
         yield from (f"refuted: {refutation.words}" for refutation in self.refutations)
@@ -167,6 +177,7 @@ class StatedPlan:
                 }
                 for one in self.steps
             ],
+            "robot": [{"step": one, "words": robot_step_in_words(one)} for one in self.robot],
             "cost": self.cost,
             "least": self.least,
             "gap": self.gap,
@@ -175,6 +186,15 @@ class StatedPlan:
                 {"step": one.step, "given": list(one.circumstances), "words": one.words} for one in self.refutations
             ],
         }
+
+
+def robot_step_in_words(step: str) -> str:
+    """Return a step of the robot itself in words; lengths in squares, Utak's frame."""
+    name, arguments = atom_parts(step)
+    types, words = ROBOT_STEPS[name]
+    return words.format(
+        *(f"{int(a) / 100:g}" if kind is LENGTH_ARGUMENT else a for a, kind in zip(arguments, types, strict=True))
+    )
 
 
 def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
@@ -227,6 +247,7 @@ def _plan(said: Mapping[str, list[tuple[str, ...]]]) -> StatedPlan:
         None if cost is None else int(cost),
         None if least is None else int(least),
         end == "proved",
+        tuple(step for _, step in sorted(said.get("step", ()), key=lambda row: int(row[0]))),
     )
 
 

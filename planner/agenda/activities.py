@@ -19,7 +19,7 @@ from utak.planner.deciding.clearing import ObstacleClearer
 from utak.planner.deciding.errands import ErrandRunner
 from utak.planner.deciding.feeling import feeling_scope
 from utak.planner.deciding.keeping import ConstraintKeeper
-from utak.planner.deciding.stage_turn import ALL_OBJECTS, CONSTRAINTS, StageTurn
+from utak.planner.deciding.stage_turn import ALL_OBJECTS, CONSTRAINTS, ROBOT_ITSELF, StageTurn
 from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.trials import Trials
 from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
@@ -28,7 +28,11 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.per_model import PerModel
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
+from utak.planner.steps import RECOVERY
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
+
+# As what steps of a plan activities without one of that name are done, where there is no task plan.
+_STEPS = {"go": f"pursue({ROBOT_ITSELF})", "look": f"confirm({ALL_OBJECTS})", "release": RECOVERY}
 
 
 class Activities:
@@ -60,6 +64,8 @@ class Activities:
             raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
+        self.step = ""  # as what step of a plan the newest command is given
+        self._begun: dict[str, str] = {}  # the steps that may be resumed, by their names
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
         """Return the function that tells whether a goal for an object holds in a situation."""
@@ -87,6 +93,7 @@ class Activities:
             decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), found, turn), turn)
             if decision.command is not None:
                 agenda.record()
+                self._note_step(found)
                 return decision
             agenda.note(found, decision)
             if decision.verdict not in (None, TaskVerdict.DONE):
@@ -94,6 +101,15 @@ class Activities:
                 proved = decision if decision.verdict == TaskVerdict.IMPOSSIBLE else proved
         agenda.record()
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
+
+    def _note_step(self, activity: Activity) -> None:
+        """Note as what step of a plan an activity is done."""
+        if activity.kind == "resume":
+            self.step = self._begun.get(activity.subject, f"{activity.subject}({ALL_OBJECTS})")
+            return
+        self.step = _STEPS.get(activity.kind, str(activity))
+        if activity.kind in self._resumed:
+            self._begun[activity.kind] = self.step
 
     def _facts(self, turn: StageTurn) -> Iterator[str]:
         """Yield the facts of a stage for the agenda, without full stops."""

@@ -77,6 +77,11 @@ class Decider:
         return self._intention.followed
 
     @property
+    def step(self) -> str:
+        """As what step of a plan the newest command is given, as kb/asp/belief.lp writes it."""
+        return self._activities.step
+
+    @property
     def attempt(self) -> TaskPlan | None:
         """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
         return self._intention.attempt

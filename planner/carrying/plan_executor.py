@@ -39,6 +39,7 @@ from utak.planner.situation import Situation
 from utak.planner.skills.failed_grasps import FailedGrasps, rotated_grasps
 from utak.planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
 from utak.planner.skills.unjam import retreat_push
+from utak.planner.steps import grasp, release
 
 # Unexpected contacts of an object after which it is grasped from elsewhere: where it is known exactly, and where it is
 # not, as after a slip. Tuned on random worlds (benchmarks.campaign).
@@ -314,7 +315,7 @@ class PlanExecutor:
             return self._take(plan, ends, situation)
         if not leg.motions:
             self._plan = replace(plan, legs=plan.legs[1:], grasped=False, place=None)
-            return Act(Release(), f"{plan.name} is where it shall be released")
+            return Act(Release(), f"{plan.name} is where it shall be released", steps=plan.steps(model))
         motion = leg.motions[0]
         polygon = motion.carry(plan.polygon)
         x, y = model.place
@@ -322,7 +323,8 @@ class PlanExecutor:
         self._pushed = motion if isinstance(motion, Translate) else None
         rest = replace(leg, motions=leg.motions[1:])
         self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
-        return Act(command_of(motion, model), f"{plan.name} is carried to its place ({plan.target})")
+        why = f"{plan.name} is carried to its place ({plan.target})"
+        return Act(command_of(motion, model), why, steps=plan.steps(model))
 
     def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
         """Return the step to where the object is grasped, or the grasp; from the present place if that does as well."""
@@ -338,14 +340,17 @@ class PlanExecutor:
             return self._next_step(self._plan, ends, situation)
         if model.held is not None:
             next_ = "to be grasped from elsewhere" if model.held == plan.name else f"because {plan.name} is moved next"
-            return Act(Release(), f"{model.held} is released, {next_}")
+            return Act(Release(), f"{model.held} is released, {next_}", steps=(release(model.held), *plan.steps(model)))
         if not there:
-            return Go(square_index(leg.place, model), leg.place, f"{plan.name} can be grasped from there")
+            why = f"{plan.name} can be grasped from there"
+            return Go(square_index(leg.place, model), leg.place, why, plan.steps(model))
         if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
-            return Act(Move(*model.frame.to_utak(dx, dy)), "the robot moves to the middle of its square")
+            why = "the robot moves to the middle of its square"
+            return Act(Move(*model.frame.to_utak(dx, dy)), why, steps=plan.steps(model))
         direction = grasp_direction(plan, model)
         if direction is None:
             return None
         self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
-        return Act(Grasp(direction), f"{plan.name} is grasped, to be carried to its place ({plan.target})")
+        why = f"{plan.name} is grasped, to be carried to its place ({plan.target})"
+        return Act(Grasp(direction), why, steps=(grasp(plan.name, direction), *self._plan.steps(model)))

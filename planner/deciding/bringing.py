@@ -32,7 +32,7 @@ def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str 
         return turn.prepare(advice)
     if turn.closes_loop(advice.command):
         return None
-    return Decision(advice.command, f"{purpose}{advice.why}; {turn.stage}")
+    return turn.act(advice, f"{purpose}{advice.why}")
 
 
 def carry_on(node: Node, turn: StageTurn, supposed: Situation) -> Decision | None:
@@ -40,4 +40,4 @@ def carry_on(node: Node, turn: StageTurn, supposed: Situation) -> Decision | Non
     act = turn.executor.continue_plan(node, supposed)
     if act is None or turn.closes_loop(act.command):
         return None
-    return Decision(act.command, f"{act.why}; {turn.stage}")
+    return turn.act(act)

@@ -31,6 +31,7 @@ from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, next_move
 from utak.planner.screen.projection import SquareIndices
 from utak.planner.situation import Situation
 from utak.planner.stages import ORIGIN_GOALS, Stage
+from utak.planner.steps import release, towards
 from utak.planner.subgoal_kind import SubgoalKind
 
 
@@ -75,7 +76,8 @@ class Pursuer:
             if taken is not None:
                 return taken
             if model.held is not None:
-                return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
+                why = f"{model.held} is released, because the robot must walk; {stage}"
+                return Decision(Release(), why, steps=(release(model.held),))
             _, within = _priced(subgoal, ways_by_price)
             ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps, telling)
             decision = self._walk(subgoal, stage, within, ways)
@@ -109,7 +111,9 @@ class Pursuer:
         kind = subgoal.kind if straight is not None or reached.level == 0 else SubgoalKind.PASS
         pace = WALKING_PACE if fewest is None else CARRYING_PACE
         move = next_move(cost_maps, route.squares, route.level, kind, pace)
-        return Decision(move, f"{subgoal.what}; {stage}")
+        column, row = route.squares[-1]
+        end = column + model.view.west + 0.5, row + model.view.south + 0.5
+        return Decision(move, f"{subgoal.what}; {stage}", steps=towards(subgoal.kind, end, model))
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from utak.geometry.kernels.arrays import XY
-from utak.kb.body import Command
+from utak.kb.body import Command, Move
 from utak.kb.language.terms import Fact
 from utak.kb.task.binding import Reconciliation
-from utak.planner.advice import Go, See
+from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
 from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
@@ -76,7 +76,12 @@ class StageTurn:
     def go(self, go: Go) -> Decision:
         """Return the next command to where an object is grasped, so that the last move halts there; or the verdict."""
         walk = self.seek([Subgoal(SubgoalKind.ATTAIN, go.square, go.why)], lambda: "no way leads there")
-        return replace(walk, command=halt_exactly_at(walk.command, go.place, self.situation.model))
+        command = halt_exactly_at(walk.command, go.place, self.situation.model)
+        return replace(walk, command=command, steps=go.steps if isinstance(command, Move) else walk.steps)
+
+    def act(self, act: Act, why: str = "") -> Decision:
+        """Return the command of an act, for a reason of its own or another one."""
+        return Decision(act.command, f"{why or act.why}; {self.stage}", steps=act.steps)
 
     def prepare(self, advice: Advice) -> Decision | None:
         """Return the next command to where an object is grasped or squares are seen; None for other advice."""

@@ -206,7 +206,7 @@ class Transporter:
                 return look
         if isinstance(advice.command, Push | Turn):
             self._presser.forget()
-        return Decision(advice.command, f"{advice.why}; {turn.stage}")
+        return turn.act(advice)
 
     def _look_for_way(
         self,
@@ -311,7 +311,7 @@ class Transporter:
         if act is None:
             return self._lead_out(node, turn) if turn.stage.goes_on else None
         turn.executor.depart(act)
-        return Decision(act.command, f"{act.why}; {turn.stage}")
+        return turn.act(act)
 
     def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in."""
@@ -322,7 +322,7 @@ class Transporter:
             return None
         self._presser.forget()
         turn.executor.depart(out)
-        return Decision(out.command, f"{out.why}; {turn.stage}")
+        return turn.act(out)
 
     def _measure_refused(self, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision | None:
         """Return the next command to measure an object that seems too large for all ends; None when it surely is."""
@@ -347,7 +347,7 @@ class Transporter:
 def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision | None:
     """Return the next command of some advice, for a push with a reason of its own; None where there is none."""
     if isinstance(advice, Act):
-        return Decision(advice.command, f"{why}; {turn.stage}")
+        return turn.act(advice, why)
     return turn.prepare(advice)
 
 
@@ -390,7 +390,7 @@ def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None
     if act is None or turn.closes_loop(act.command):
         return None
     turn.executor.depart(act)
-    return Decision(act.command, f"{act.why}: {what}; {turn.stage}")
+    return turn.act(act, f"{act.why}: {what}")
 
 
 def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> Decision | None:

@@ -1,0 +1,62 @@
+"""The steps of the robot itself, as kb/asp/belief.lp declares step/2; each command is one.
+
+A decision names the steps with which the plan goes on: first that of its command, then what the robot means to do after
+it, such as to look where it goes, or what is left of a plan that carries a thing.
+"""
+
+from utak.geometry.kernels.arrays import XY
+from utak.geometry.motion.se2 import Motion, Rotate
+from utak.kb.body import Command, Grasp, Move, Push, Turn
+from utak.kb.world.model import WorldModel, hundredths
+from utak.planner.subgoal_kind import SubgoalKind
+
+RECOVERY = "recover(robot)"  # the step of a plan in which a robot that is lost puts down what it holds
+
+
+def step_of_command(command: Command, model: WorldModel) -> str:
+    """Return the step of a command alone, for what is in hand."""
+    match command:
+        case Move(east, north):
+            x, y = model.frame.place_to_utak(*model.place)
+            return _term("go", hundredths(x + east), hundredths(y + north))
+        case Push(east, north):
+            return _term("push", model.held, hundredths(east), hundredths(north))
+        case Turn(degrees):
+            return _term("turn", model.held, hundredths(degrees))
+        case Grasp(direction):
+            raise ValueError(f"what is grasped to the {direction} is known to who decides it only")
+    return release(str(model.held))
+
+
+def release(thing: str) -> str:
+    """Return the step that a thing is let go."""
+    return _term("release", thing)
+
+
+def grasp(thing: str, direction: str) -> str:
+    """Return the step that a thing is grasped which lies in a direction."""
+    return _term("grasp", thing, direction)
+
+
+def motion_of(thing: str, motion: Motion, model: WorldModel) -> str:
+    """Return the step of a motion, map frame, with a thing in hand."""
+    if isinstance(motion, Rotate):
+        return _term("turn", thing, hundredths(motion.degrees))
+    return _term("push", thing, *map(hundredths, model.frame.to_utak(motion.dx, motion.dy)))
+
+
+def go_to(place: XY, model: WorldModel) -> str:
+    """Return the step to a point (x, y) in squares, map frame."""
+    return _term("go", *map(hundredths, model.frame.place_to_utak(*place)))
+
+
+def towards(kind: str, place: XY, model: WorldModel) -> tuple[str, ...]:
+    """Return the steps towards a subgoal of a kind at a point (x, y) in squares, map frame."""
+    there = tuple(map(hundredths, model.frame.place_to_utak(*place)))
+    then = () if kind == SubgoalKind.ATTAIN else (_term("feel" if kind == SubgoalKind.FEEL else "look", *there),)
+    return (_term("go", *there), *then)
+
+
+def _term(name: str, *arguments: object) -> str:
+    """Return a step as the facts write it."""
+    return f"{name}({','.join(map(str, arguments))})"
