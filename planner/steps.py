@@ -4,9 +4,13 @@ A decision names the steps with which the plan goes on: first that of its comman
 it, such as to look where it goes, or what is left of a plan that carries a thing.
 """
 
+from collections.abc import Sequence
+
 from utak.geometry.kernels.arrays import XY
+from utak.geometry.manipulation.plan_carrying import Leg
 from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.body import Command, Grasp, Move, Push, Turn
+from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.world.model import WorldModel, hundredths
 from utak.planner.subgoal_kind import SubgoalKind
 
@@ -48,6 +52,17 @@ def motion_of(thing: str, motion: Motion, model: WorldModel) -> str:
 def go_to(place: XY, model: WorldModel) -> str:
     """Return the step to a point (x, y) in squares, map frame."""
     return _term("go", *map(hundredths, model.frame.place_to_utak(*place)))
+
+
+def of_legs(thing: str, legs: Sequence[Leg], grasped: bool, model: WorldModel) -> tuple[str, ...]:
+    """Return the steps of some legs, map frame, with a thing, which may be grasped already for the first one."""
+    steps: list[str] = []
+    for number, leg in enumerate(legs):
+        if number or not grasped:
+            direction = model.frame.directions().get(leg.direction_square, ANY_SIDE)
+            steps += [go_to(leg.place, model), grasp(thing, direction)]
+        steps += [*(motion_of(thing, motion, model) for motion in leg.motions), release(thing)]
+    return tuple(steps)
 
 
 def towards(kind: str, place: XY, model: WorldModel) -> tuple[str, ...]:

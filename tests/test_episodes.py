@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.episodes.planned import REFLEXES, differences, planned
 from tests.tables import few
 from utak.simulator.cli.main import main
 from utak.simulator.scenario.scenario import read_any_world
@@ -78,6 +79,15 @@ def test_what_is_claimed_is_so_and_the_judge_finds_nothing(name: str, episode, t
     assert last["verdict"] == "done" or last["reason"]
     assert (last["verdict"] == "done") == last["believed"]
     assert judged(name, episode(name), tmp_path) == ""
+
+
+@pytest.mark.parametrize("name", few(EXAMPLES, TRIED))
+def test_each_command_is_the_first_step_of_what_was_planned(name: str, episode) -> None:  # type: ignore[no-untyped-def]
+    """The robot says before each command with which steps it goes on, and these can be done one after the other."""
+    lines = [line for line in map(json.loads, episode(name).read_text().splitlines()) if "step" in line]
+    assert list(differences(lines)) == []
+    reflexes = sum(planned(line)[0][0].startswith(REFLEXES) for line in lines[:-1])
+    assert reflexes <= 0.03 * (len(lines) - 1)
 
 
 @pytest.mark.parametrize("name", few(REMEMBERED, TRIED))

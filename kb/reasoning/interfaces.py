@@ -28,6 +28,8 @@ from utak.kb.language.vocabulary import (
     MAP_REGION_ARGUMENT,
     PLAN_PREDICATES,
     RESUMED_STEPS,
+    ROBOT_STEP_ARGUMENT,
+    ROBOT_STEPS,
     SETTLING_STEPS,
     SHAPE_CLASSES,
     TASK_PARAMETER_ARGUMENT,
@@ -112,6 +114,7 @@ ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
 # By the name of an argument type of compound terms: these terms.
 COMPOUND_FORMS: Mapping[str, Forms] = {
     "step": PLAN_STEPS,
+    ROBOT_STEP_ARGUMENT.name: {name: types for name, (types, _) in ROBOT_STEPS.items()},
     "activity": ACTIVITIES,
     "fact": STATED_FACTS,
     "act": ACTS,
@@ -257,8 +260,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("distance", 2): (CANDIDATE_ARGUMENT, AMOUNT_ARGUMENT),
         ("bound_before", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("carried", 1): (PARAMETER_ARGUMENT,),
-        ("fixed", 1): (CANDIDATE_ARGUMENT,),
-        ("moved", 1): (CANDIDATE_ARGUMENT,),
+        **{(name, 1): (CANDIDATE_ARGUMENT,) for name in ("fixed", "moved")},
         ("may_have", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
         ("planned", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("given_up", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
@@ -328,23 +330,22 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("asked", 1): (PLAN_DOOR_ARGUMENT,),
         ("closed", 1): (PLAN_DOOR_ARGUMENT,),
     },
+    "steps": {
+        **dict.fromkeys([("offered", 2), ("step", 2)], (NUMBER_ARGUMENT, ROBOT_STEP_ARGUMENT)),
+        ("holds", 1): (NODE_ARGUMENT,),
+        ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
+        ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
+    },
     "agenda": {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
-        ("missing", 1): (GOAL_ARGUMENT,),
-        ("unclear", 1): (GOAL_ARGUMENT,),
-        ("own_goals", 0): (),
-        ("regions_forbidden", 0): (),
-        ("stages_attained", 0): (),
-        ("constraints_doubtful", 0): (),
-        ("hand_full", 0): (),
-        ("robot_lost", 0): (),
-        ("map_contradicted", 0): (),
+        **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
+        **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
+        **{(name, 0): () for name in ("hand_full", "robot_lost", "map_contradicted", "stage_attained")},
         ("begun", 1): (BEGUN_ARGUMENT,),
         ("planned", 1): (STEP_ARGUMENT,),
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
         ("do", 1): (ACTIVITY_ARGUMENT,),
-        ("stage_attained", 0): (),
         ("verdict", 1): (VERDICT_ARGUMENT,),
     },
     "feel": {
@@ -376,6 +377,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
     "walks": frozenset(USER_RULE_INTERFACES["walks"]) - {("avoid_link", 1), ("link_price", 2)},
+    "steps": frozenset(USER_RULE_INTERFACES["steps"]),
     "feel": frozenset(USER_RULE_INTERFACES["feel"]) - {("supposed", 3)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
@@ -390,7 +392,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        **dict.fromkeys(("reconciliation", "chances", "walks", "feel", "task", "agenda"), WORLD_PREDICATES),
+        **dict.fromkeys(("reconciliation", "chances", "walks", "feel", "task", "steps", "agenda"), WORLD_PREDICATES),
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.

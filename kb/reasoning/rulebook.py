@@ -23,6 +23,7 @@ from utak.kb.reasoning.interfaces import (
     TRANSIENT_NUMBERS,
     USER_RULE_INTERFACES,
     WORLD_FACTS_THERE,
+    WORLD_PREDICATES,
 )
 
 QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
@@ -203,7 +204,7 @@ class Rulebook:
         found = self._applicable(known | world, read_only | world)
         if not world or encoding == "task":
             return found
-        world |= {signature for signature in read_only if signature in BELIEF_PREDICATES}
+        world |= {signature for signature in read_only if signature in WORLD_PREDICATES}
         of_world = self._applicable(world, world)  # with what they define
         return tuple(one for one in found if one.heads or one not in of_world)
 

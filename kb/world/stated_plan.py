@@ -21,6 +21,7 @@ CERTAINTY_WORDS = {
     "hoped": "geometry found a way over floor that is only hoped to be free",
     "not asked": "geometry was not asked for its way when the plan was made",
 }
+ROBOT_STEP_INDENT = "      "  # before a line that tells a step of the robot itself
 HERE_PLACE = "here"  # the place of everything where it was when the plan was made
 START_WORD = "start"  # in stood(start): the robot stands where it was when the plan was made
 
@@ -114,8 +115,7 @@ class StatedPlan:
     @property
     def found(self) -> bool:
         """Whether there is a plan that attains all goals."""
-        begun = bool(self.steps) and not self.steps[0].settles
-        return self.cost is not None or (begun and not self.unmet)
+        return self.cost is not None or (bool(self.steps) and not self.unmet)
 
     @property
     def gap(self) -> int | None:
@@ -148,10 +148,7 @@ class StatedPlan:
         for step in self.steps:
             yield step.line
             if step.number == 0:
-                yield from (
-                    f"    {'>' if not number else ' '} {robot_step_in_words(one)}"
-                    for number, one in enumerate(self.robot)
-                )
+                yield from (f"{ROBOT_STEP_INDENT}{robot_step_in_words(one)}" for one in self.robot)
         if self.cost_words:
             yield f"cost: {self.cost_words}" if self.cost else self.cost_words
         yield from (f"refuted: {refutation.words}" for refutation in self.refutations)

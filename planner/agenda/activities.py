@@ -28,7 +28,8 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.per_model import PerModel
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
-from utak.planner.steps import RECOVERY
+from utak.planner.step_rules import refusal
+from utak.planner.steps import RECOVERY, step_of_command
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
 
 # As what steps of a plan activities without one of that name are done, where there is no task plan.
@@ -91,6 +92,7 @@ class Activities:
                 agenda.plan(step)
                 continue
             decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), found, turn), turn)
+            decision = _done_by_rules(decision, turn.situation)
             if decision.command is not None:
                 agenda.record()
                 self._note_step(found)
@@ -237,6 +239,14 @@ def _put_down(situation: Situation) -> Decision:
     held = situation.model.held
     why = f"{held} is released, because the robot does not know where it is: nothing looks as expected"
     return Decision(Release(), why)
+
+
+def _done_by_rules(decision: Decision, situation: Situation) -> Decision:
+    """Return a decision; `limit` in place of a command of which the steps may not be done."""
+    if decision.command is None:
+        return decision
+    refused = refusal(decision.steps or (step_of_command(decision.command, situation.model),), situation)
+    return Decision(None, f"{decision.why}; {refused}", TaskVerdict.LIMIT) if refused else decision
 
 
 def _added(verdict: Decision, found: Decision) -> Decision:

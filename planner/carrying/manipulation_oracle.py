@@ -17,6 +17,7 @@ import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End, goal_key, moved
+from utak.geometry.manipulation.legs import shifted
 from utak.geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, Leg, plan_carrying
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.geometry.raster.rasterize import squares, squares_after
@@ -39,12 +40,16 @@ from utak.planner.navigation.subgoals import PLANNER_ASP
 from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.screen.projection import UNSEEN_LEVEL, dilate
 from utak.planner.situation import Situation
+from utak.planner.step_rules import are_ruled, refusal
+from utak.planner.steps import of_legs, release
 from utak.planner.under_way import UNDER_WAY
 
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
 TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of squares, the surest first
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
 MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
+PUSH_PARTS = (1, 2, 4)  # parts in which a push is made where users' rules forbid it otherwise; a convention
+SAME_PLACE = 1e-6  # squares within which the robot is where a plan begins: rounding only
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
 CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
 WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on random worlds (benchmarks.campaign)
@@ -140,6 +145,7 @@ class ManipulationOracle:
         ]
         options += [f"last({request.last_target})"] * (request.last_target in request.ends)
         verdicts: list[str] = []
+        forbidden: list[str] = []  # what users' rules say of plans that were found
         refuted: list[tuple[int, CarryingPlan]] = []  # each with the level that it was asked for
         for number in range(1, MAX_ORACLE_ROUNDS + 1):
             UNDER_WAY.words = f"carrying {request.node.name}, way {number} of at most {MAX_ORACLE_ROUNDS}"
@@ -154,10 +160,21 @@ class ManipulationOracle:
                 continue
             if plan.status == "found":
                 found = _manipulation_plan(plan, shape, name, level, situation, request.node)
-                return self._bolder(request, found, situation, hoped)
+                bolder = self._bolder(request, found, situation, hoped)
+                ruled = are_ruled(situation)
+                for parts in PUSH_PARTS if ruled else (1,):
+                    in_parts = _pushed_in_parts(bolder, parts)
+                    why = _refusal(in_parts, situation, request.node) if ruled else ""
+                    if not why:
+                        return in_parts
+                forbidden.append(why)  # it may be grasped otherwise
+                request = replace(request, avoid=(*request.avoid, *(leg.hold for leg in bolder.plan.legs)), held=False)
+                continue
             refuted.append((level, plan))
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{others})")
+        if forbidden:
+            return Infeasibility(False, f"{request.node.name} may not be carried there: {forbidden[-1]}")
         self._found_nothing = True
         answer = certify(request.node, refuted, situation.model)
         return replace(answer, proved=False) if _may_use_other_ways(request.node, situation) else answer
@@ -240,6 +257,29 @@ class ManipulationOracle:
             roomy = ask(*_with_clearance(free, shape)) if contacts >= CONTACTS_FOR_CLEARANCE else None
             self._answers[key] = roomy if roomy is not None and roomy.legs else ask(free)
         return self._answers[key]
+
+
+def _pushed_in_parts(found: ManipulationPlan, parts: int) -> ManipulationPlan:
+    """Return a plan with each push made in some equal parts, one after the other."""
+    legs = [
+        replace(leg, motions=tuple(m.part(1 / n) for m in leg.motions for n in _parts_of(m, parts)))
+        for leg in found.plan.legs
+    ]
+    return found if parts == 1 else replace(found, plan=replace(found.plan, legs=tuple(legs)))
+
+
+def _parts_of(motion: Motion, parts: int) -> tuple[int, ...]:
+    """Return for each part of a motion how many parts there are: one of a turn."""
+    return (parts,) * parts if isinstance(motion, Translate) else (1,)
+
+
+def _refusal(found: ManipulationPlan, situation: Situation, node: Node) -> str:
+    """Return why the steps of a plan may not be done, in words; "" where they may."""
+    model = situation.model
+    legs = [shifted(leg, model.view.west, model.view.south) for leg in found.plan.legs]
+    grasped = model.held == node.name and math.dist(legs[0].place, model.place) < SAME_PLACE
+    first = () if model.held is None or grasped else (release(model.held),)
+    return refusal((*first, *of_legs(node.name, legs, grasped, model)), situation)
 
 
 def _may_use_other_ways(node: Node, situation: Situation) -> bool:

@@ -18,14 +18,13 @@ from utak.geometry.manipulation.plan_carrying import Leg
 from utak.geometry.manipulation.workspace import Workspace
 from utak.geometry.motion.se2 import Motion, Translate
 from utak.kb.body import DIRECTIONS
-from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.mapping.patch import Patch
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
 from utak.planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
 from utak.planner.screen.projection import square_index
 from utak.planner.situation import Situation
-from utak.planner.steps import go_to, grasp, motion_of, release
+from utak.planner.steps import of_legs
 
 PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
 KEPT_LEVEL = 2  # certainty level of squares over which a plan is kept, though a surer one was asked for; a convention
@@ -62,13 +61,7 @@ class RemainingPlan:
 
     def steps(self, model: WorldModel) -> tuple[str, ...]:
         """Return the steps of the robot that are left, in order."""
-        steps: list[str] = []
-        for number, leg in enumerate(self.legs):
-            if number or not self.grasped:
-                direction = model.frame.directions().get(leg.direction_square, ANY_SIDE)
-                steps += [go_to(leg.place, model), grasp(self.name, direction)]
-            steps += [*(motion_of(self.name, motion, model) for motion in leg.motions), release(self.name)]
-        return tuple(steps)
+        return of_legs(self.name, self.legs, self.grasped, model)
 
 
 def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:

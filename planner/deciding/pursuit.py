@@ -5,7 +5,11 @@ A route is kept while it holds: its subgoal is still wanted, and the squares ahe
 
 from collections.abc import Callable, Sequence
 from math import inf
+from typing import NamedTuple
 
+import numpy as np
+
+from utak.geometry.kernels.arrays import Square
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED
 from utak.kb.body import Command, Release
 from utak.kb.language.goal_words import ROBOT
@@ -29,10 +33,20 @@ from utak.planner.navigation.walks import (
 )
 from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, next_move
 from utak.planner.screen.projection import SquareIndices
+from utak.planner.sights.frontiers import VIEW_SPACING
 from utak.planner.situation import Situation
 from utak.planner.stages import ORIGIN_GOALS, Stage
+from utak.planner.step_rules import are_ruled, refusal
 from utak.planner.steps import release, towards
 from utak.planner.subgoal_kind import SubgoalKind
+
+
+class RefusedEnd(NamedTuple):
+    """The end of a walk that users' rules refuse."""
+
+    what: str  # the reason for the walk, in words
+    end: Square  # (column, row) on the arrays of the view
+    why: str  # the rules, in words
 
 
 class Pursuer:
@@ -65,13 +79,19 @@ class Pursuer:
         telling = telling_squares(situation) if rests else None
         fewest = FewestMoves(situation.cost_maps, telling) if stage.carried else None
         ways_by_price = by_dearest_door(situation)
+        ruled, refused = are_ruled(situation), list[RefusedEnd]()
         while True:
             offered = [_priced(one, ways_by_price)[0] for one in self._circles.priced(subgoals, model)]
             if fewest is not None:
                 offered = fewest.priced(offered)
+            if refused:
+                offered = [one for one in (_without(one, refused, model) for one in offered) if len(one.squares)]
             subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model))
             if subgoal is None:
-                return _given_up(stage, missing(), proof, in_circles=len(offered) < len(subgoals))
+                missed, circled = missing(), len(offered) < len(subgoals) and not refused
+                if refused:
+                    missed, proof = f"{missed}, and {' and '.join(dict.fromkeys(one.why for one in refused))}", ()
+                return _given_up(stage, missed, proof, in_circles=circled)
             taken = None if along is None else along(subgoal)
             if taken is not None:
                 return taken
@@ -81,6 +101,9 @@ class Pursuer:
             _, within = _priced(subgoal, ways_by_price)
             ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps, telling)
             decision = self._walk(subgoal, stage, within, ways)
+            if ruled and (why := refusal(decision.steps, situation)):
+                refused.append(RefusedEnd(subgoal.what, self._kept.path(model)[-1], why))
+                continue
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
             self._circles.tire(to_map_squares(subgoal.squares, model))
@@ -164,6 +187,17 @@ def _priced(subgoal: Subgoal, ways: Sequence[tuple[int, Situation]]) -> tuple[Su
     if within is not situation and nearest is not None:
         squares = squares[within.cost_maps.distances[nearest.level].ravel()[squares] != GEODESIC_UNREACHED]
     return subgoal._replace(squares=squares, price=subgoal.price + min(more)), within
+
+
+def _without(subgoal: Subgoal, refused: Sequence[RefusedEnd], model: WorldModel) -> Subgoal:
+    """Return a subgoal without the squares near to those at which users' rules refuse it."""
+    rows, columns = np.unravel_index(subgoal.squares, model.labels.shape)
+    far = np.ones(len(subgoal.squares), np.bool_)
+    for one in refused:
+        column, row = one.end
+        if one.what == subgoal.what:
+            far &= np.maximum(abs(rows - row), abs(columns - column)) > VIEW_SPACING
+    return subgoal._replace(squares=subgoal.squares[far])
 
 
 def _given_up(stage: Stage, missing: str, proof: Sequence[str], in_circles: bool) -> Decision:

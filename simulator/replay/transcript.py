@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.world.stated_plan import stated_plan
+from utak.kb.world.stated_plan import ROBOT_STEP_INDENT, stated_plan
 from utak.simulator.episode.episode import Episode
 from utak.simulator.replay.changes import changes
 from utak.simulator.run.story import recorded_story
@@ -22,7 +22,8 @@ def transcript(name: str, episode: Episode) -> Iterator[str]:
         line, facts = story.line, [one_line(fact) for fact in story.line["belief"]["facts"]]
         head = step_in_words(line)
         plan = _plan(facts)
-        told = [f"plan as before: {plan[0]}"] if plan and plan == planned else plan  # or that there is none, as before
+        same = bool(plan) and _without_robot(plan) == _without_robot(planned)
+        told = [f"plan as before: {plan[0]}", *_robot(plan)] if same else plan  # or that there is none, as before
         head = "\n".join([head, *others_in_words(line)])
         yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *told, *_changes(before, facts), "", ""])
         before, planned = facts, plan
@@ -43,6 +44,16 @@ def _plan(facts: list[str]) -> list[str]:
     lines = [] if plan is None else [one_line(line) for line in plan.lines()]
     steps = [line for line in lines if line.startswith((">", " "))]
     return [*steps, *(line for line in lines if line not in steps)]
+
+
+def _robot(plan: list[str]) -> list[str]:
+    """Return the lines of a plan that tell the steps of the robot itself."""
+    return [line for line in plan if line.startswith(ROBOT_STEP_INDENT)]
+
+
+def _without_robot(plan: list[str]) -> list[str]:
+    """Return the lines of a plan that stay while a step of it is done."""
+    return [line for line in plan if not line.startswith(ROBOT_STEP_INDENT)]
 
 
 def _changes(before: list[str] | None, facts: list[str]) -> Iterator[str]:

@@ -38,6 +38,7 @@ class Undecided:
     corners: Mapping[str, Corner] = {}
     plan = attempt = None
     alternatives: tuple[str, ...] = ()
+    step = "pursue(robot)"
 
     def __init__(self) -> None:
         self.asked: list[bool] = []
