@@ -48,7 +48,7 @@ EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is cal
 TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of squares, the surest first
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
 MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
-PUSH_PARTS = (1, 2, 4)  # parts in which a push is made where users' rules forbid it otherwise; a convention
+MOTION_PARTS = (1, 2, 4)  # parts in which a motion is made where users' rules forbid it otherwise; a convention
 SAME_PLACE = 1e-6  # squares within which the robot is where a plan begins: rounding only
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
 CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
@@ -162,8 +162,8 @@ class ManipulationOracle:
                 found = _manipulation_plan(plan, shape, name, level, situation, request.node)
                 bolder = self._bolder(request, found, situation, hoped)
                 ruled = are_ruled(situation)
-                for parts in PUSH_PARTS if ruled else (1,):
-                    in_parts = _pushed_in_parts(bolder, parts)
+                for parts in MOTION_PARTS if ruled else (1,):
+                    in_parts = _moved_in_parts(bolder, parts)
                     why = _refusal(in_parts, situation, request.node) if ruled else ""
                     if not why:
                         return in_parts
@@ -259,18 +259,15 @@ class ManipulationOracle:
         return self._answers[key]
 
 
-def _pushed_in_parts(found: ManipulationPlan, parts: int) -> ManipulationPlan:
-    """Return a plan with each push made in some equal parts, one after the other."""
+def _moved_in_parts(found: ManipulationPlan, parts: int) -> ManipulationPlan:
+    """Return a plan with each push and turn made in some equal parts, one after the other."""
+    if parts == 1:
+        return found
     legs = [
-        replace(leg, motions=tuple(m.part(1 / n) for m in leg.motions for n in _parts_of(m, parts)))
+        replace(leg, motions=tuple(m.part(1 / parts) for m in leg.motions for _ in range(parts)))
         for leg in found.plan.legs
     ]
-    return found if parts == 1 else replace(found, plan=replace(found.plan, legs=tuple(legs)))
-
-
-def _parts_of(motion: Motion, parts: int) -> tuple[int, ...]:
-    """Return for each part of a motion how many parts there are: one of a turn."""
-    return (parts,) * parts if isinstance(motion, Translate) else (1,)
+    return replace(found, plan=replace(found.plan, legs=tuple(legs)))
 
 
 def _refusal(found: ManipulationPlan, situation: Situation, node: Node) -> str:

@@ -77,7 +77,9 @@ class Transporter:
     def _examine(self, goal: Fact, node: Node, turn: StageTurn) -> Decision:
         """Return the next look at the object of a goal of which something is not clear; nothing when all is clear."""
         if node.polygon is not None and self._presser.is_pressed(goal, node, turn.situation):
-            return self._press_on(node, turn) or done(f"{goal} holds")
+            pressed = self._press_on(node, turn)
+            if pressed or not self._land(goal, node, turn).viewpoints:
+                return pressed or done(f"{goal} holds")
         look = _look_at(node, turn)
         if look is not None:
             return look
@@ -90,7 +92,7 @@ class Transporter:
         """Return the next command to carry the object of a goal, or the verdict; done when the goal holds."""
         x = str(goal.args[0])
         assert node.polygon is not None
-        land = self.place(goal, node, self.origin_of(x, node, turn.situation), turn.situation)
+        land = self._land(goal, node, turn)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
         lost = self._origins.lost(x, node, turn.situation)
@@ -100,6 +102,11 @@ class Transporter:
                 return Decision(None, why, TaskVerdict.LIMIT)
             self._presser.begin(goal, node, land, turn.situation)
             return self._press_on(node, turn) or done(f"{goal} holds")
+        if land.presses and not self._presser.has_begun(goal, node):
+            self._presser.begin(goal, node, land, turn.situation)
+            pressed = self._press_on(node, turn)
+            if pressed is not None:
+                return pressed
         advice = self._advice(node, land, turn)
         if isinstance(advice, Infeasibility) and land.loose:
             if meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation)):
@@ -131,6 +138,10 @@ class Transporter:
         subgoals = self.search([unknown], turn.situation, turn.reconciled)
         decision = self._look_for_way(advice, node, land, subgoals, turn)
         return self._check_proof(advice, decision, node, land, turn)
+
+    def _land(self, goal: Fact, node: Node, turn: StageTurn) -> Placement:
+        """Return where a goal for an object holds."""
+        return self.place(goal, node, self.origin_of(str(goal.args[0]), node, turn.situation), turn.situation)
 
     def conflict(self, stage: Stage, situation: Situation) -> Decision:
         """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once."""

@@ -85,7 +85,8 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
         viewpoints = _room_viewpoints(side, situation.along_with(node.patch))
     if not viewpoints:
         return found
-    return Placement({}, viewpoints[0].what, viewpoints, there=not shut_in, shut_in=shut_in)
+    # What is in hand is pressed first: the robot lets it go for a look.
+    return Placement({}, viewpoints[0].what, viewpoints, there=not shut_in, shut_in=shut_in, presses=found.presses)
 
 
 def corner_may_move(goal: Fact, situation: Situation) -> bool:

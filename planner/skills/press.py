@@ -49,6 +49,10 @@ class Presser:
             self.forget()
         return self._of is not None
 
+    def has_begun(self, goal: Fact, node: Node) -> bool:
+        """Return whether presses of an object for a goal were begun, and none of them went on."""
+        return self._of == (str(goal), node.name)
+
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
         """Note the presses of a held object that is believed to lie where a goal holds."""
         if land.presses and situation.model.held == node.name:

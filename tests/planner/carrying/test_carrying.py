@@ -502,3 +502,17 @@ def test_a_robot_that_is_shut_in_a_corner_leads_the_held_object_out(
     assert how in next(tmp_path.rglob("episode.jsonl")).read_text()
     assert trial.achieved
     assert trial.believed
+
+
+@pytest.mark.long
+def test_a_square_is_pressed_into_a_slanted_corner_before_it_is_let_go_for_a_look(tmp_path: Path) -> None:
+    ring = (
+        "(0 0, 0 31, 30 31, 30 0, 0 0), (17.01391 2, 28.178458 17.499119, 14.245991 29.687285, 2 12.68686, 17.01391 2)"
+    )
+    square = "(11.955654 17.34, 11.56 20.313795, 14.533795 20.709449, 14.929449 17.735654, 11.955654 17.34)"
+    things = f'verge("POLYGON ({ring})"). object(t, j, "POLYGON ({square})").'
+    world = f'table(30, 31). utak("POINT (9.5 9.5)", 326). {things}'
+    done = run(scene(tmp_path, world, "object(x). shape(x, square).", "at(x, corner(southeast))."))
+    assert done.result.verdict == "done", done.result.reason
+    corner = shapely.Point(17.01391, 2)
+    assert done.session.table.polygons["t"].distance(corner) < 3
