@@ -15,7 +15,7 @@ from benchmarks.worlds.scenes import RandomScenario
 from utak.kb.body import Body, Impression
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.field_account import Accommodation
-from utak.kb.localisation.hypotheses.frames import FrameHypothesis
+from utak.kb.localisation.hypotheses.frames import Hypothesis
 from utak.kb.mapping.occupancy import FREE, OCCUPIED
 from utak.kb.perception.frame import Frame, turned
 from utak.kb.task.task import Task
@@ -47,7 +47,7 @@ class Informed(Knowledge):
         x, y = math.floor(world.utak.x), math.floor(world.utak.y)
         within = turned(world.utak.x - x - 0.5, world.utak.y - y - 0.5, -90 * quarters)
         origin = (within[0] + 0.5, within[1] + 0.5)
-        hypotheses = (FrameHypothesis(angle, origin + origin),)
+        hypotheses = (Hypothesis(angle, origin + origin),)
         self.tracker.state = replace(memory, frame=Frame(angle, origin), place=origin, hypotheses=hypotheses)
         width, height = world.plan.width, world.plan.height
         occupied = np.logical_or.reduce(

@@ -16,7 +16,7 @@ from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.contacts import Obstructions
 from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, grid_cell_size
+from utak.kb.localisation.hypotheses.frames import FieldRanges, Hypothesis, grid_cell_size
 from utak.kb.localisation.hypotheses.remap import RemapCache
 from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
 from utak.kb.localisation.known.state import TrackerState
@@ -92,13 +92,13 @@ def moved_object(situation: ObservedSituation, chosen: Explanation, suspected: f
     return carried
 
 
-def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHypothesis, ...]:
+def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[Hypothesis, ...]:
     """Return the frame hypotheses left by an observation of objects that were turned, in their order."""
     # Where several exact origins (hypotheses that name one point) of the believed orientation are left, those are
     # returned that agree with the observation, or all of them when none does; otherwise all hypotheses, unchanged.
     within = _exact_origins(state)
     if len(within) <= 1:
-        return state.hypotheses
+        return state.frames
     own, error = state.frame.place_to_utak(*state.place), math.hypot(*grid_cell_size(within)) / 2
     agree, maps = [], RemapCache(state.frame, state.occupancy, state.observations, state.held_objects)
     for hypothesis in within:
@@ -130,6 +130,6 @@ def turned_astray(state: TrackerState, degrees: float) -> float:
     return 2 * state.place_doubt * abs(math.sin(math.radians(degrees / 2)))
 
 
-def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:
+def _exact_origins(state: TrackerState) -> tuple[Hypothesis, ...]:
     """Return the hypotheses of the believed orientation that name an exact origin, in their order; empty for none."""
-    return tuple(h for h in state.hypotheses if h.angle == state.frame.angle and h.is_point)
+    return tuple(h for h in state.frames if h.angle == state.frame.angle and h.is_point)

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, OriginBox, Position
+from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Hypothesis, OriginBox, Position, exact_hypothesis
 from utak.kb.localisation.hypotheses.walk_outcomes import add
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.objects.held_object import Square
@@ -63,26 +63,16 @@ def _weighed(state: TrackerState) -> Iterator[tuple[OriginBox, float]]:
         yield (x + west, y + south, x + east, y + north), 1.0
         return
     here = state.frame.place_to_utak(*state.place)
-    ends = [*_other_places(state, here)]
-    chosen = max(0.0, 1 - sum(chance for _, chance in ends))
-    for hypothesis in state.hypotheses or (FrameHypothesis(state.frame.angle, state.frame.origin * 2),):
+    ends = ((here, 1.0), *((add(here, end.shift), math.exp(-end.prior_cost)) for end in state.ends))
+    for hypothesis in state.frames or (exact_hypothesis(state.frame),):
         exact = hypothesis.is_centred or hypothesis.is_point
         room = 1.0 if exact else hypothesis.area * math.exp(-OFF_CENTRE_COST)
         weight = room * math.exp(-hypothesis.prior_cost)
-        for place, chance in ((here, chosen), *ends):
-            yield _box(hypothesis, state.frame, place), weight * chance
+        for place, odds in ends:
+            yield _box(hypothesis, state.frame, place), weight * odds
 
 
-def _other_places(state: TrackerState, here: Position) -> Iterator[tuple[Position, float]]:
-    """Yield where the robot is if one of the last motions ended elsewhere, Utak's own frame, with its chance."""
-    for motion in state.earlier:
-        believed = state.observations[motion.number].place
-        settled = motion.chance_of_end(believed) is not None  # a later look told which end it was
-        for end, chance in () if settled else motion.alternative_ends:
-            yield add(here, (end[0] - believed[0], end[1] - believed[1])), chance
-
-
-def _box(hypothesis: FrameHypothesis, believed: Frame, place: Position) -> OriginBox:
+def _box(hypothesis: Hypothesis, believed: Frame, place: Position) -> OriginBox:
     """Return where a place of Utak's own frame is on the map by a hypothesis, turned as the believed map is."""
     west, south, east, north = hypothesis.box
     turns = round((believed.angle - hypothesis.angle) / 90)  # the grid is the same after each quarter turn

@@ -18,16 +18,19 @@ from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, TableChange
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
+    KEPT_ODDS,
     FieldRanges,
+    Hypothesis,
     Observation,
     OriginBox,
     Position,
+    exact_hypothesis,
     observation_squares,
 )
 from utak.kb.localisation.hypotheses.recognition import half_cell, narrowed, place_of, recognise, told_by_contact
 from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
-    MotionHypothesis,
+    StraightMotion,
     add,
     entered_square,
     observation_places,
@@ -36,6 +39,7 @@ from utak.kb.localisation.hypotheses.walk_outcomes import (
 from utak.kb.localisation.known.situation import ObservedSituation, count_clashes, residual_at
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.localisation.proposals import explain
+from utak.kb.localisation.propose.earlier_motion import ends_left
 from utak.kb.localisation.propose.lifted import MIN_KNOWN_LOOKS, look_at
 from utak.kb.localisation.propose.others import forgetting
 from utak.kb.localisation.propose.smaller_object import refined_extent
@@ -46,6 +50,7 @@ from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square, he
 from utak.kb.perception.retina import count_ranges
 
 MAX_MOTIONS = 12  # last straight motions that are kept for re-estimation: bounds its time; tuned on random worlds
+MAX_KEPT_ENDS = 5  # other ends kept side by side: bounds the time of a look; the most were 1 in 57 worlds of campaign
 RESIDUAL_WINDOW = 4  # last observations by whose residuals a localisation failure is recognised; tuned likewise
 
 
@@ -119,7 +124,7 @@ class Tracker:
             state,
             in_hand=None,
             motions=(),
-            hypotheses=tuple(h for h in state.hypotheses if h.contains(state.frame)) or state.hypotheses,
+            hypotheses=tuple(h for h in state.frames if h.contains(state.frame)) or state.frames,
             place_error=error,
             lifted_at=state.lifted_at | {len(state.observations)},
         )
@@ -177,7 +182,7 @@ class Tracker:
             state.occupancy.uncover(lay, held.lying(there).possible, held.since - 1)
         if isinstance(command, Push | Move) and (held is not None or situation.walked):
             way, name = (command.east, command.north), None if held is None else held.name
-            motion = MotionHypothesis(len(state.observations), way, state.hypotheses, in_hand=name)
+            motion = StraightMotion(len(state.observations), way, state.frames, in_hand=name)
             self.state = replace(self.state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
     def _accommodate(self, situation: ObservedSituation) -> Accommodation:
@@ -185,7 +190,7 @@ class Tracker:
         chosen, ends = explain(situation)
         if chosen.how == "lost":
             return self._unexplained(chosen, situation.ranges)
-        self._learn(chosen, ends)
+        self._learn(situation, chosen, ends)
         self._apply(chosen)
         if not situation.carries:
             chosen = self._end_walk(situation, chosen)
@@ -261,7 +266,7 @@ class Tracker:
             refined = refined_extent(self.state, self.state.held_objects[name], ranges, self.state.place)
             if refined is not None:
                 self.update_object(refined)
-        self.state = replace(self.state, hypotheses=agreeing_origins(self.state, ranges))
+        self.state = replace(self.state, hypotheses=(*agreeing_origins(self.state, ranges), *self.state.ends))
         self.state = replace(self.state, held_objects=objects_astray(self.state))
 
     # -- the one place where an explanation is applied -------------------------------------------
@@ -276,7 +281,7 @@ class Tracker:
             return
         state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
-            state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
+            state = replace(state, confirmations=0)
             held_objects = held_or_moved(held_objects, state.in_hand)
         if chosen.correction is not None:
             correction = chosen.correction
@@ -315,18 +320,13 @@ class Tracker:
             removed=state.removed + len(change.gone),
         )
 
-    def _learn(self, chosen: Explanation, ends: Iterable[Explanation]) -> None:
-        """Keep in `state` which frame hypotheses are left, and where else the newest motion may have ended."""
-        state = self.state
-        if chosen.hypotheses and not chosen.remaps:
-            self.state = state = replace(state, hypotheses=chosen.hypotheses)
-        weights = [(one, (one.chance or 0.0) * math.exp(-one.prior_cost)) for one in ends]
-        if not weights or chosen.frame != state.frame or state.motions[-1].number != len(state.observations):
-            return
-        total = sum(weight for _, weight in weights)
-        others = [(state.frame.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place]
-        motions = (*state.motions[:-1], state.motions[-1]._replace(alternative_ends=tuple(others)))
-        self.state = replace(state, motions=motions)
+    def _learn(self, situation: ObservedSituation, chosen: Explanation, ends: Iterable[Explanation]) -> None:
+        """Keep in `state` which frames are left, and where else motions may have ended."""
+        state, number = self.state, len(self.state.observations)
+        beside = (one for one in ends if chosen.is_end and one.place != chosen.place)
+        newest = (_other_end(one, chosen, number) for one in beside if one.odds <= chosen.odds + KEPT_ODDS)
+        kept = sorted((*ends_left(situation, chosen), *newest), key=lambda end: end.prior_cost)[:MAX_KEPT_ENDS]
+        self.state = replace(state, hypotheses=(*(chosen.hypotheses or state.frames), *kept))
 
     def _declare(self, patch: Patch, value: int) -> None:
         """Settle the squares of a patch, map frame, as FREE or OCCUPIED."""
@@ -356,6 +356,12 @@ class Tracker:
             place=_standing_place(state, explanation.place),
         )
         return Accommodation(explanation, fields)
+
+
+def _other_end(end: Explanation, chosen: Explanation, number: int) -> Hypothesis:
+    """Return the hypothesis that the motion before an observation ended elsewhere than by the chosen explanation."""
+    shift = end.frame.to_utak(end.place[0] - chosen.place[0], end.place[1] - chosen.place[1])
+    return exact_hypothesis(end.frame)._replace(prior_cost=end.odds - chosen.odds, since=number, shift=shift)
 
 
 def _begun(state: TrackerState, made: Iterable[Observation], former: TrackerState | None, unsteady: bool) -> Tracker:

@@ -2,7 +2,7 @@
 
 In reading order:
 
-frames  frame hypotheses: orientation and origin of the grid, judged by contradictions of observations
+frames  hypotheses: orientation and origin of the grid, judged by contradictions; which motion ended elsewhere
 remap  all observations and held objects in another frame
 map_prior  the description length of the simplest map in a frame
 walk_outcomes  where a walk may have ended, at and beside grid lines

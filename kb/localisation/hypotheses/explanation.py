@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.correction import WalkCorrection
-from utak.kb.localisation.hypotheses.frames import FrameHypothesis, OriginBox, Position
+from utak.kb.localisation.hypotheses.frames import Hypothesis, OriginBox, Position
 from utak.kb.objects.held_object import HeldObject, Square
 from utak.kb.perception.frame import CENTRE, Frame
 from utak.kb.reasoning.encodings import KB_ENCODINGS
@@ -44,7 +44,7 @@ class Explanation(NamedTuple):
     # far the object goes on beyond what was seen; for changed how many things others moved, took or brought
     distance: float
     outcome: CarryOutcome | None = None  # of the motion of the object in hand; None when nothing was to be moved
-    hypotheses: tuple[FrameHypothesis, ...] = ()  # the frame hypotheses that are left; empty where they stay
+    hypotheses: tuple[Hypothesis, ...] = ()  # the frame hypotheses that are left; empty where they stay
     correction: WalkCorrection | None = None  # of a motion that ended elsewhere than believed; None when none did
     contact_known: bool = False  # whether something known stands where that motion was blocked
     # The probability (0 to 1) of this end of the motion before the observation; None when it was not asked
@@ -79,6 +79,11 @@ class Explanation(NamedTuple):
     def is_end(self) -> bool:
         """Return whether it is an end of the newest motion in the believed frame, with its chance."""
         return self.how in ("predicted", "blocked") and self.chance is not None
+
+    @property
+    def odds(self) -> float:
+        """The log odds (natural logarithm) against it by its map and its chance."""
+        return self.prior_cost - math.log(max(self.chance or 0.0, MIN_PRICED_CHANCE))
 
     @property
     def is_odd(self) -> bool:

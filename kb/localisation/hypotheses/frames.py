@@ -1,4 +1,4 @@
-"""Frame hypotheses: how the grid of the map may lie in Utak's own frame, judged by all observations so far.
+"""Hypotheses: how the grid of the map may lie in Utak's own frame, and which motion may have ended elsewhere.
 
 In a wrong frame two observations, or two fields of one observation, claim of one square that it is free and that it is
 occupied. A frame with such a contradiction is given up. Of the frames that are left the one with the best map prior is
@@ -21,14 +21,14 @@ FieldRanges = NDArray[np.int16]  # (160, 2): least and greatest count of occupie
 
 MAX_CHECKED_OBSERVATIONS = 12  # observations by which orientations are judged; older contradictions are gone; tuned
 FRAME_ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))  # degrees: a quarter turn in all
-PLAUSIBLE_COST = 5.0  # map prior cost up to which an orientation counts as plausible yet, in log odds; tuned
+KEPT_ODDS = 6.0  # log odds within which hypotheses are kept side by side, 1 to 400: a convention
 OFF_CENTRE_COST = 2.5  # log odds against having woken elsewhere than in the middle of a square: a convention
 CRAMPED_SIDE = 0.1  # of a square: a side left for the origin below this, divided by the observations, is suspicious
 ORIGIN_GRID = 11  # points along either side of what is left for the origin: 0.1 squares apart at most
 
 
-class FrameHypothesis(NamedTuple):
-    """A frame hypothesis: an orientation of the grid, and where in its square Utak may have woken."""
+class Hypothesis(NamedTuple):
+    """A hypothesis: an orientation of the grid, where in its square Utak woke, which motion ended elsewhere."""
 
     # Degrees by which Utak's own frame is turned against the grid of the map, counter-clockwise positive, -44 to 45; as
     # of `Frame.angle`.
@@ -37,8 +37,12 @@ class FrameHypothesis(NamedTuple):
     # point where the origin is known exactly
     box: OriginBox
     # By how much the simplest map costs more than on the best frame, in log odds (natural logarithm); 0 when not
-    # weighed
+    # weighed. Of another end of a motion: by how much it is less likely than the believed one
     prior_cost: float = 0.0
+    since: int | None = None  # the number of the observation after the motion that ended elsewhere; None when none did
+    # By how much that observation and all later ones were made elsewhere than believed, (east, north) in squares,
+    # Utak's own frame
+    shift: Position = (0.0, 0.0)
 
     @property
     def frame(self) -> Frame:
@@ -71,7 +75,7 @@ class FrameHypothesis(NamedTuple):
         within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
         return self.angle == frame.angle and within
 
-    def split(self, place: Position) -> "list[FrameHypothesis]":
+    def split(self, place: Position) -> "list[Hypothesis]":
         """Return the parts of the hypothesis for each of which `place` lies in one square, the centre's part first."""
         west, south, east, north = self.box
         dx, dy = Frame(self.angle).to_map(*place)
@@ -80,13 +84,13 @@ class FrameHypothesis(NamedTuple):
         return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
 
 
-def exact_hypothesis(frame: Frame) -> FrameHypothesis:
+def exact_hypothesis(frame: Frame) -> Hypothesis:
     """Return the hypothesis that the frame is exactly `frame`: its box is the point of the origin."""
-    return FrameHypothesis(frame.angle, frame.origin + frame.origin)
+    return Hypothesis(frame.angle, frame.origin + frame.origin)
 
 
-CENTRED_HYPOTHESES = tuple(FrameHypothesis(angle, CENTRE + CENTRE) for angle in FRAME_ANGLES)
-ALL_HYPOTHESES = tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in FRAME_ANGLES)
+CENTRED_HYPOTHESES = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in FRAME_ANGLES)
+ALL_HYPOTHESES = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in FRAME_ANGLES)
 
 
 class ObjectPose(NamedTuple):
@@ -138,10 +142,10 @@ def count_contradictions_at(
 
 
 def prune_hypotheses(
-    hypotheses: Iterable[FrameHypothesis],
+    hypotheses: Iterable[Hypothesis],
     observations: Sequence[Observation],
     unsettled: Sequence[UnsettledDisc] = (),
-) -> tuple[FrameHypothesis, ...]:
+) -> tuple[Hypothesis, ...]:
     """Return what the last of the observations leaves of some hypotheses, in their order; empty when it refutes all."""
     # A hypothesis is split where the last observation would fall on different squares.
     judged: dict[tuple[int, bytes], bool] = {}
@@ -158,9 +162,9 @@ def prune_hypotheses(
 
 def consistent_hypotheses(
     observations: Sequence[Observation],
-    hypotheses: Iterable[FrameHypothesis] = ALL_HYPOTHESES,
+    hypotheses: Iterable[Hypothesis] = ALL_HYPOTHESES,
     unsettled: Sequence[UnsettledDisc] = (),
-) -> tuple[FrameHypothesis, ...]:
+) -> tuple[Hypothesis, ...]:
     """Return what all observations together leave of some hypotheses, in their order; empty when they refute all."""
     left = tuple(hypotheses)
     for number in range(1, len(observations) + 1):
@@ -168,9 +172,9 @@ def consistent_hypotheses(
     return left
 
 
-def any_origin(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
+def any_origin(angles: Iterable[int]) -> tuple[Hypothesis, ...]:
     """Return a hypothesis for each orientation in `angles`, in that order, that allows every origin."""
-    return tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
+    return tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
 
 
 def observation_squares(frame: Frame, observations: Sequence[Observation]) -> NDArray[np.int64]:
@@ -195,7 +199,7 @@ def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
 
 
 def origin_leeway(
-    frame: Frame, observations: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]
+    frame: Frame, observations: Sequence[Observation], hypotheses: Sequence[Hypothesis]
 ) -> tuple[float, float, float, float]:
     """Return how far the true origin may lie from the believed one."""
     west, south, east, north = origin_box(frame, observations)
@@ -207,15 +211,15 @@ def origin_leeway(
     return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
 
 
-def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
+def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[Hypothesis, ...]:
     """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns."""
     west, south, east, north = origin_box(frame, observations)
     steps = (np.arange(ORIGIN_GRID) + 0.5) / ORIGIN_GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
-    return tuple(FrameHypothesis(frame.angle, place + place) for place in places)
+    return tuple(Hypothesis(frame.angle, place + place) for place in places)
 
 
-def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool:
+def is_cramped(hypotheses: Sequence[Hypothesis], observations: int) -> bool:
     """Return whether less room is left for the origin than so many observations leave by chance."""
     if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
@@ -223,14 +227,14 @@ def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool
     return bool(min((east - west).max(), (north - south).max()) < CRAMPED_SIDE / max(observations, 1))
 
 
-def grid_cell_size(points: Sequence[FrameHypothesis]) -> tuple[float, float]:
+def grid_cell_size(points: Sequence[Hypothesis]) -> tuple[float, float]:
     """Return the width and height, in squares, of the cell for which each of some points of an origin grid stands."""
     lines = [np.unique(np.round([point.box[axis] for point in points], 9)) for axis in (0, 1)]
     width, height = (float(np.diff(line).min()) if len(line) > 1 else 0.0 for line in lines)
     return width, height
 
 
-def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> list[Frame]:
+def frames_to_try(hypotheses: Sequence[Hypothesis], believed: Frame) -> list[Frame]:
     """Return the frames of some hypotheses, the likeliest first."""
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2

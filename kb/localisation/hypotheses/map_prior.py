@@ -13,7 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from utak.geometry.counts.gibbs import DRAWN, EDGE_COST, OCCUPIED, costs, pictures
-from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
+from utak.kb.localisation.hypotheses.frames import (
+    KEPT_ODDS,
+    OFF_CENTRE_COST,
+    Hypothesis,
+    Observation,
+    observation_squares,
+)
 from utak.kb.localisation.hypotheses.remap import remap
 from utak.kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, SceneKey, given_squares, scenes
 from utak.kb.mapping.occupancy import OccupancyMap
@@ -35,7 +41,6 @@ MAX_REWEIGHED_FRAMES = 8  # frames that are weighed again with the next observat
 MAX_REWEIGHED_COST = 10.0  # log odds up to which a frame is weighed again; tuned
 REWEIGHED_ANGLES = 2  # degrees about the best orientation that are weighed again, too: one observation confuses them
 UNTRIED_COST = 12.0  # log odds against frames that are not tried, at least: above all that are weighed again
-CLOSE_ODDS = 6.0  # log odds within which frames or maps are drawn once more; tuned
 MAX_REDRAWS = 2  # times that close maps are drawn once more; tuned
 OBLIQUE_COST = 4.5  # log odds against any one orientation but Utak's own axes; about ln 90, for 90 orientations
 SEEDS_PER_EFFORT = 16  # random seeds reserved for each effort: more than completions in any effort
@@ -106,7 +111,7 @@ def relative_costs(maps: Sequence[MapDescription]) -> list[float]:
         description.draw()
     for _ in range(MAX_REDRAWS):
         odds = [description.cost(0.0) + description.against for description in maps]
-        close = [n for n, one in enumerate(odds) if one <= min(odds) + CLOSE_ODDS]
+        close = [n for n, one in enumerate(odds) if one <= min(odds) + KEPT_ODDS]
         for n in close if len(close) > 1 else ():
             maps[n].draw()
     prices = [description.cost(0.0) for description in maps]
@@ -121,12 +126,10 @@ class AlikeHypotheses(NamedTuple):
     against: float  # log odds against having woken in that part of the square; 0 for the middle or a single point
 
 
-def weigh_hypotheses(
-    hypotheses: Sequence[FrameHypothesis], observations: Sequence[Observation]
-) -> tuple[FrameHypothesis, ...]:
+def weigh_hypotheses(hypotheses: Sequence[Hypothesis], observations: Sequence[Observation]) -> tuple[Hypothesis, ...]:
     """Return the same hypotheses (angle and box of origins unchanged), each with its prior cost above the best."""
     keys = [_squares_key(hypothesis, observations) for hypothesis in hypotheses]
-    same: dict[SquaresKey, list[FrameHypothesis]] = {}
+    same: dict[SquaresKey, list[Hypothesis]] = {}
     for hypothesis, key in zip(hypotheses, keys, strict=True):
         same.setdefault(key, []).append(hypothesis)
     alike = {key: _alike(own) for key, own in same.items()}
@@ -154,20 +157,20 @@ def _odds(
             trial.draw()
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
-    close = [key for key in odds if odds[key] <= best + CLOSE_ODDS]
+    close = [key for key in odds if odds[key] <= best + KEPT_ODDS]
     for key in close if len(close) > 1 else ():
         trials[key].draw()
         odds[key] = trials[key].odds + alike[key].against
     return odds
 
 
-def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation]) -> SquaresKey:
+def _squares_key(hypothesis: Hypothesis, observations: Sequence[Observation]) -> SquaresKey:
     """Return what hypotheses of the same map share: (angle in degrees, squares relative to the last one, as bytes)."""
     squares = observation_squares(hypothesis.frame, observations)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
 
 
-def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
+def _alike(same: Sequence[Hypothesis]) -> AlikeHypotheses:
     """Return hypotheses of the same map, at least one, as one."""
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from utak.geometry.counts.retina import FIELDS, RETINA_REACH
 from utak.geometry.kernels.arrays import Bools, Longs
-from utak.kb.localisation.hypotheses.frames import FieldRanges, OriginBox, Position
+from utak.kb.localisation.hypotheses.frames import KEPT_ODDS, FieldRanges, OriginBox, Position
 from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, SIGHT_RANGE, OccupancyMap
 from utak.kb.mapping.patch import Patch
 from utak.kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
-# Nats by which the best place must lead: twice those within which explanations are kept side by side, for open squares
-# are weighed as if they were independent
-MIN_LEAD = 12.0
+# Log odds by which the best place must lead: twice those of what is kept side by side, as open squares count as
+# independent
+MIN_LEAD = 2 * KEPT_ODDS
 MISFIT_LOSS = 10.0  # nats that a field of noise costs, as in kb/asp/accommodation.lp
 # Nats that it costs on top of that where a place is recognised: hardly is the map wrong there, or a thing moved, too
 FORBIDDEN_LOSS = 20.0

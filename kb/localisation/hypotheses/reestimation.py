@@ -16,7 +16,7 @@ from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,
-    FrameHypothesis,
+    Hypothesis,
     Observation,
     Position,
     UnsettledDisc,
@@ -28,7 +28,7 @@ from utak.kb.localisation.hypotheses.frames import (
 from utak.kb.localisation.hypotheses.remap import MapReplay, RemappedMap, ReplayPrefixes, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
-    MotionHypothesis,
+    StraightMotion,
     line_crossings,
     observation_places,
 )
@@ -41,7 +41,7 @@ QUICK_CHECK_OBSERVATIONS = 3  # observations, about, that are compared before al
 
 
 def reestimate_walk(
-    motion: MotionHypothesis,
+    motion: StraightMotion,
     believed: Frame,
     observations: Sequence[Observation],
     prefixes: Callable[[Frame], ReplayPrefixes] | None = None,
@@ -57,7 +57,7 @@ def reestimate_walk(
             yield from (one for one in found if one.contact_known == surest)
 
 
-def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
+def _likeliest_hypotheses(hypotheses: tuple[Hypothesis, ...]) -> tuple[Hypothesis, ...]:
     """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more."""
     if len(hypotheses) <= MAX_REESTIMATED_HYPOTHESES:
         return hypotheses
@@ -66,8 +66,8 @@ def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[Fram
 
 
 def _other_ends(
-    motion: MotionHypothesis,
-    hypothesis: FrameHypothesis,
+    motion: StraightMotion,
+    hypothesis: Hypothesis,
     observations: Sequence[Observation],
     begun: ReplayPrefixes,
 ) -> Iterator[Explanation]:
@@ -77,7 +77,7 @@ def _other_ends(
     judged: dict[bytes, RemappedMap | None] = {}
     ranges, places = stack_ranges(observations), np.array([observation.place for observation in observations])
     for end in walk.ends:
-        shift = end.place[0] - believed[0], end.place[1] - believed[1]
+        shift = end.shift_from(believed)
         if math.hypot(*shift) < LINE_DISTANCE:  # as believed
             continue
         correction = WalkCorrection(number, shift)
@@ -102,9 +102,7 @@ def _other_ends(
                 yield _misled(hypothesis, correction, place, ahead == OCCUPIED)
 
 
-def _misled(
-    hypothesis: FrameHypothesis, correction: WalkCorrection, newest: Position, contact_known: bool
-) -> Explanation:
+def _misled(hypothesis: Hypothesis, correction: WalkCorrection, newest: Position, contact_known: bool) -> Explanation:
     """Return the explanation by another end of a motion. newest : of the observations, Utak's own frame."""
     place, far = hypothesis.frame.place_from_utak(*newest), math.hypot(*correction.shift)
     misled = Explanation("misled", place, hypothesis.frame, 0, far, None, (hypothesis,), correction)
@@ -147,11 +145,15 @@ class WalkEnd(NamedTuple):
     # the motion, 0 to 1
     progress: float
 
+    def shift_from(self, place: Position) -> Position:
+        """Return by how much it lies from a place: (east, north) in squares, Utak's own frame."""
+        return self.place[0] - place[0], self.place[1] - place[1]
+
 
 class WalkInFrame:
     """A motion with an empty hand, in a frame."""
 
-    def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
+    def __init__(self, motion: StraightMotion, frame: Frame, observations: Sequence[Observation]) -> None:
         """Find the ends of a motion."""
         x, y = observations[motion.number - 1].place
         self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_map(*motion.shift))

@@ -12,14 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from utak.kb.localisation.hypotheses.frames import FrameHypothesis, Position
+from utak.kb.localisation.hypotheses.frames import Hypothesis, Position
 from utak.kb.objects.held_object import Square
 
 MAX_WALK_SLIP = 2  # squares from the predicted end within which a slipped walk is looked for; tuned
 LINE_DISTANCE = 1e-6  # squares from a grid line to a place right beside it: contacts of the physics are that exact
 MIN_PASSED = 0.1  # squares of way through a square that tell that it was passed; less may be an error of the place
 GRID_LINE_TOLERANCE = 1e-3  # squares from a grid line that count as on it (convention)
-LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an earlier motion counts as likely; tuned
 MAX_KEPT_WAYS = 1024  # ways whose squares are kept: bounds memory
 
 
@@ -34,26 +33,13 @@ class Crossing(NamedTuple):
     entered: Square  # the square (column, row) beyond, that of `after`
 
 
-class MotionHypothesis(NamedTuple):
-    """A straight motion as it was commanded, and where else it may have ended."""
+class StraightMotion(NamedTuple):
+    """A straight motion as it was commanded."""
 
     number: int  # of the observation after it; the first observation has the number 0
     shift: Position  # the commanded motion, (east, north) in squares, Utak's own frame
-    hypotheses: tuple[FrameHypothesis, ...]  # the frame hypotheses before that observation
+    hypotheses: tuple[Hypothesis, ...]  # the frame hypotheses before that observation
     in_hand: str | None = None  # the name of the object in hand; None when there was none
-    # Other ends that agree with that observation, (east, north) in squares, Utak's own frame, each with its probability
-    # after the observation
-    alternative_ends: tuple[tuple[Position, float], ...] = ()
-
-    @property
-    def likely_ends(self) -> list[Position]:
-        """The other ends that count as likely: (east, north) in squares, Utak's own frame."""
-        return [there for there, chance in self.alternative_ends if chance > LIKELY_END_CHANCE]
-
-    def chance_of_end(self, place: Position) -> float | None:
-        """Return the probability of an end at `place`; None when it is no known other end."""
-        near = (chance for there, chance in self.alternative_ends if math.dist(there, place) < 4 * LINE_DISTANCE)
-        return max(near, default=None)
 
 
 def blocked_ends(start: Position, shift: Position) -> tuple[Position, ...]:

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
+    KEPT_ODDS,
     MAX_CHECKED_OBSERVATIONS,
-    PLAUSIBLE_COST,
-    FrameHypothesis,
+    Hypothesis,
     Observation,
     any_origin,
     consistent_hypotheses,
@@ -24,7 +24,7 @@ SETTLED_SPREAD = math.radians(5)  # orientations that differ by less hardly caus
 
 
 def another_frame(
-    state: TrackerState, left: tuple[FrameHypothesis, ...], observations: Sequence[Observation]
+    state: TrackerState, left: tuple[Hypothesis, ...], observations: Sequence[Observation]
 ) -> Explanation | None:
     """Return the explanation by the likeliest frame that no observation contradicts; None if there is none."""
     recent = observations[-MAX_CHECKED_OBSERVATIONS - 1 :]
@@ -32,7 +32,7 @@ def another_frame(
         beside = consistent_hypotheses(recent, any_origin((state.frame.angle,)))
         left = weigh_hypotheses((*beside, *(h for h in left if h.angle != state.frame.angle)), recent)
     found = _fitting(state, left, observations)
-    if found is None or state.prior_cost(found.frame.angle) > PLAUSIBLE_COST:
+    if found is None or state.prior_cost(found.frame.angle) > KEPT_ODDS:
         again = tuple(one._replace(prior_cost=state.prior_cost(one.angle)) for one in consistent_hypotheses(recent))
         tried = [one for one in (found, _fitting(state, again, observations)) if one is not None]
         found = min(tried, key=lambda one: one.prior_cost, default=None)
@@ -40,7 +40,7 @@ def another_frame(
 
 
 def _fitting(
-    state: TrackerState, left: tuple[FrameHypothesis, ...], observations: Sequence[Observation]
+    state: TrackerState, left: tuple[Hypothesis, ...], observations: Sequence[Observation]
 ) -> Explanation | None:
     """Return the explanation by the likeliest frame that nothing contradicts; None if there is none."""
     most = max(MIN_TRIED_FRAMES, MAX_REPLAYED_OBSERVATIONS // len(observations))

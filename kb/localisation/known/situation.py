@@ -30,7 +30,7 @@ from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
     MAX_CHECKED_OBSERVATIONS,
     FieldRanges,
-    FrameHypothesis,
+    Hypothesis,
     Observation,
     Position,
     UnsettledDisc,
@@ -39,7 +39,7 @@ from utak.kb.localisation.hypotheses.frames import (
 from utak.kb.localisation.hypotheses.map_prior import weigh_hypotheses
 from utak.kb.localisation.hypotheses.reestimation import reestimate_walk
 from utak.kb.localisation.hypotheses.remap import RemapCache, RemappedMap, ReplayPrefixes
-from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, add
+from utak.kb.localisation.hypotheses.walk_outcomes import StraightMotion, add
 from utak.kb.localisation.known.frames_left import another_frame
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import OccupancyMap
@@ -145,10 +145,10 @@ class ObservedSituation:
         return [*self.state.observations, self.observation]
 
     @cached_property
-    def left(self) -> tuple[FrameHypothesis, ...]:
+    def left(self) -> tuple[Hypothesis, ...]:
         """Return the frame hypotheses that the last observations leave, with their prior costs; cached."""
         recent = self.observations[-MAX_CHECKED_OBSERVATIONS - 1 :]
-        return weigh_hypotheses(prune_hypotheses(self.state.hypotheses, recent), recent)
+        return weigh_hypotheses(prune_hypotheses(self.state.frames, recent), recent)
 
     @cached_property
     def another(self) -> Explanation | None:
@@ -161,7 +161,7 @@ class ObservedSituation:
         return any(hypothesis.contains(self.state.frame) for hypothesis in self.left)
 
     @cached_property
-    def other_ends(self) -> Callable[[MotionHypothesis], tuple[Explanation, ...]]:
+    def other_ends(self) -> Callable[[StraightMotion], tuple[Explanation, ...]]:
         """Return a function that returns other ends of a walk, in any frame it may have been made in; cached itself."""
         begun = lru_cache(MAX_KEPT_REPLAYS)(lambda frame: ReplayPrefixes(frame, self.observations, {}))
         return cache(lambda motion: tuple(reestimate_walk(motion, self.state.frame, self.observations, begun)))
@@ -202,7 +202,7 @@ class ObservedSituation:
     def by_frame(
         self,
         frame: Frame,
-        hypotheses: tuple[FrameHypothesis, ...],
+        hypotheses: tuple[Hypothesis, ...],
         cut_short: bool = False,
         origin_error: float = 0.0,
     ) -> Explanation | None:
@@ -223,7 +223,7 @@ class ObservedSituation:
     def by_outcome(
         self,
         frame: Frame,
-        hypotheses: tuple[FrameHypothesis, ...],
+        hypotheses: tuple[Hypothesis, ...],
         outcome: CarryOutcome,
         slack: float = 0.0,
         origin_error: float = 0.0,
@@ -319,10 +319,9 @@ def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
     # None when that end was no known alternative.
     correction = explanation.correction
     assert correction is not None
-    motion = next((motion for motion in state.motions if motion.number == correction.since), None)
-    if motion is None or motion.number >= len(state.observations) or explanation.frame != state.frame:
-        return explanation
-    return explanation._replace(chance=motion.chance_of_end(correction.place(state.observations[motion.number].place)))
+    kept = state.kept_end(correction.since, correction.shift)
+    known = kept is not None and kept.contains(explanation.frame)
+    return explanation._replace(chance=math.exp(-kept.prior_cost)) if kept and known else explanation
 
 
 def residual_at(situation: ObservedSituation, place: Position, outcome: CarryOutcome | None = None) -> int:

@@ -10,8 +10,8 @@ from itertools import pairwise
 
 from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
-    PLAUSIBLE_COST,
-    FrameHypothesis,
+    KEPT_ODDS,
+    Hypothesis,
     Observation,
     OriginBox,
     Position,
@@ -21,7 +21,8 @@ from utak.kb.localisation.hypotheses.map_prior import UNTRIED_COST
 from utak.kb.localisation.hypotheses.recognition import Look, places_within
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
-    MotionHypothesis,
+    StraightMotion,
+    add,
     observation_places,
     squares_passed,
 )
@@ -47,7 +48,8 @@ class TrackerState:
     place: Position = CENTRE  # where Utak is: (x, y) in squares, map frame
     # All observations since the tracker began, oldest first; each keeps its place in Utak's own frame
     observations: tuple[Observation, ...] = ()
-    hypotheses: tuple[FrameHypothesis, ...] = CENTRED_HYPOTHESES  # the frame hypotheses that are left
+    # The frames that are left, and other ends of the last motions within KEPT_ODDS of the believed ones
+    hypotheses: tuple[Hypothesis, ...] = CENTRED_HYPOTHESES
     confirmations: int = 0  # number of observations in a row that confirmed the believed frame
     # Squares that stopped Utak himself when a motion was about to enter them, map frame
     blocked_squares: frozenset[Square] = frozenset()
@@ -56,8 +58,8 @@ class TrackerState:
     slipped: bool = False  # whether any motion ended beside its predicted end, on this map
     # Whether motions did so on an earlier map, or that contradicted itself, which the robot's own motions explain
     unsteady: bool = False
-    # The last straight motions, oldest first. Each may have ended otherwise than believed.
-    motions: tuple[MotionHypothesis, ...] = ()
+    # The last straight motions, oldest first
+    motions: tuple[StraightMotion, ...] = ()
     # All objects that were ever held, by name, map frame
     held_objects: Mapping[str, HeldObject] = field(default_factory=dict)
     in_hand: str | None = None  # the name of the object in the hand; None when the hand is empty
@@ -130,7 +132,7 @@ class TrackerState:
     @property
     def leeway(self) -> tuple[float, float, float, float]:
         """Return how far the true origin of the frame may lie from the believed one: (west, south, east, north)."""
-        return origin_leeway(self.frame, self.observations, self.hypotheses)
+        return origin_leeway(self.frame, self.observations, self.frames)
 
     @property
     def place_doubt(self) -> float:
@@ -164,23 +166,23 @@ class TrackerState:
     @property
     def spread(self) -> float:
         """Return the greatest difference between the believed orientation and one that is left, in radians."""
-        return self._spread(self.hypotheses)
+        return self._spread(self.frames)
 
     @property
     def likely_spread(self) -> float:
         """Return the greatest difference between the believed orientation and a plausible one left, in radians."""
-        return self._spread(other for other in self.hypotheses if other.prior_cost <= PLAUSIBLE_COST)
+        return self._spread(other for other in self.frames if other.prior_cost <= KEPT_ODDS)
 
-    def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
+    def _spread(self, hypotheses: Iterable[Hypothesis]) -> float:
         """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians."""
         return math.radians(max((abs(other.angle - self.frame.angle) for other in hypotheses), default=0))
 
     @property
     def sure(self) -> bool:
         """Return whether what the counts settle is beyond doubt."""
-        along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
-        settled = not (self.shaken or self._askew_since_lift or any(map(self._elsewhere_likely, self.motions)))
-        return settled and (along or len(self.hypotheses) == 1)
+        along = self.frame.angle == 0 and all(other.is_centred for other in self.frames)
+        settled = not (self.shaken or self._askew_since_lift or any(map(self._is_elsewhere, self.ends)))
+        return settled and (along or len(self.frames) == 1)
 
     @property
     def slips(self) -> bool:
@@ -198,19 +200,33 @@ class TrackerState:
         looks = self.observations[max(self.lifted_at) :] if any(self.place_error) else ()
         return any(len(self.places_near(self.frame.place_from_utak(*look.place))) > 1 for look in looks)
 
-    def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
-        """Return whether a motion may well have ended in another square than believed, by the observation after it."""
-        if motion.number >= len(self.observations):
-            return False
-        places = [self.observations[motion.number].place, *motion.likely_ends]
-        squares = {(math.floor(x), math.floor(y)) for x, y in (self.frame.place_from_utak(*own) for own in places)}
-        return len(squares) > 1
+    def _is_elsewhere(self, end: Hypothesis) -> bool:
+        """Return whether the observation after a motion was made in another square if the motion ended elsewhere."""
+        own = self.observations[end.since or 0].place
+        places = self.frame.place_from_utak(*own), self.frame.place_from_utak(*add(own, end.shift))
+        return len({(math.floor(x), math.floor(y)) for x, y in places}) > 1
+
+    @property
+    def frames(self) -> tuple[Hypothesis, ...]:
+        """Return the hypotheses by which all motions ended as believed: the frames that are left."""
+        return tuple(one for one in self.hypotheses if one.since is None)
+
+    @property
+    def ends(self) -> tuple[Hypothesis, ...]:
+        """Return the hypotheses by which one of the last straight motions ended elsewhere than believed."""
+        numbers = {motion.number for motion in self.reestimable}
+        return tuple(one for one in self.hypotheses if one.since in numbers)
+
+    def kept_end(self, since: int, shift: Position) -> Hypothesis | None:
+        """Return the hypothesis by which everything since an observation lies elsewhere by a shift, or None."""
+        near = [end for end in self.ends if end.since == since and math.dist(end.shift, shift) < 4 * LINE_DISTANCE]
+        return min(near, key=lambda end: math.dist(end.shift, shift), default=None)
 
     def prior_cost(self, angle: int) -> float:
         """Return by how much the map prior of an orientation is worse than the best one, in log odds."""
         if angle == self.frame.angle:
             return 0.0
-        return min((one.prior_cost for one in self.hypotheses if one.angle == angle), default=UNTRIED_COST)
+        return min((one.prior_cost for one in self.frames if one.angle == angle), default=UNTRIED_COST)
 
     # -- obstacles that contacts showed ----------------------------------------------------------
 
@@ -231,19 +247,14 @@ class TrackerState:
     # -- motions that may be re-estimated --------------------------------------------------------
 
     @property
-    def reestimable(self) -> tuple[MotionHypothesis, ...]:
+    def reestimable(self) -> tuple[StraightMotion, ...]:
         """Return the last straight motions, oldest first, that can be re-estimated (may have other ends)."""
         return tuple(motion for motion in self.motions if motion.in_hand is None or motion.in_hand in self.held_objects)
 
     @property
-    def earlier(self) -> tuple[MotionHypothesis, ...]:
+    def earlier(self) -> tuple[StraightMotion, ...]:
         """Return the last straight motions whose observation has been integrated already, oldest first."""
         return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
-
-    @property
-    def doubtful(self) -> tuple[MotionHypothesis, ...]:
-        """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first."""
-        return tuple(motion for motion in self.earlier if motion.likely_ends)
 
     def is_beside_things(self, held: HeldObject) -> bool:
         """Return whether other things that were seen lie on an object's squares, or share an edge with them."""

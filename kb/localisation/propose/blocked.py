@@ -11,9 +11,7 @@ from collections.abc import Iterable
 
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, partial_outcome, predicted_outcome
-from utak.kb.localisation.hypotheses.contacts import (
-    NO_SQUARES,
-)
+from utak.kb.localisation.hypotheses.contacts import NO_SQUARES
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs

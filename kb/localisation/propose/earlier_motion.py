@@ -5,28 +5,20 @@ again with the correction, for what blocked the one may have blocked the other, 
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Set
 
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obstructions, square_polygon
 from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, likeliest_first
-from utak.kb.localisation.hypotheses.frames import (
-    PLAUSIBLE_COST,
-    Position,
-    observation_squares,
-)
+from utak.kb.localisation.hypotheses.frames import KEPT_ODDS, Hypothesis, Position, observation_squares
 from utak.kb.localisation.hypotheses.recognition import places_within
-from utak.kb.localisation.hypotheses.reestimation import (
-    WalkEnd,
-    WalkInFrame,
-    remap_if_consistent,
-)
+from utak.kb.localisation.hypotheses.reestimation import WalkEnd, WalkInFrame, remap_if_consistent
 from utak.kb.localisation.hypotheses.remap import object_at, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
-    MotionHypothesis,
+    StraightMotion,
     add,
     observation_places,
     slipped_ends,
@@ -38,46 +30,43 @@ from utak.kb.mapping.patch import patch_of_polygon
 from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
 
 
-def reestimate_motions(situation: ObservedSituation, motions: Sequence[MotionHypothesis]) -> list[Explanation]:
-    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame."""
-    tried = [motion for motion in reversed(motions) if _has_known_pose(motion, situation)]
-    found = (with_chance(situation.state, one) for motion in tried for one in _other_ends(situation, motion))
+def propose(situation: ObservedSituation) -> list[Explanation]:
+    """Return the explanations by which an earlier motion ended elsewhere than believed."""
+    state = situation.state
+    if not state.held_objects:
+        return _earlier_walks(situation) if situation.walked else []
+    simple = [one for one in situation.found if is_simple(state, one) and one.frame == state.frame]
+    return [] if any(one.chance is not None for one in simple) else reestimate_motions(situation, bool(simple))
+
+
+def reestimate_motions(situation: ObservedSituation, kept: bool) -> list[Explanation]:
+    """Return other ends of earlier motions with which nothing is contradicted, believed frame: all, or those kept."""
+    state, doubtful = situation.state, {end.since for end in situation.state.ends}
+    motions = (motion for motion in _known_motions(situation) if not kept or motion.number in doubtful)
+    found = (with_chance(state, one) for motion in motions for one in _other_ends(situation, motion, kept))
     return sorted(found, key=lambda one: not one.contact_known)
 
 
-def propose(situation: ObservedSituation) -> list[Explanation]:
-    """Return the explanations by which an earlier motion ended elsewhere than believed."""
-    if not situation.state.held_objects:
-        return _earlier_walks(situation) if situation.walked else []
-    found = reestimate_motions(situation, motions_in_question(situation))
-    return [one for one in found if one.chance is not None or not _simple_here(situation)]
-
-
-def motions_in_question(situation: ObservedSituation) -> tuple[MotionHypothesis, ...]:
-    """Return the earlier motions that may have ended elsewhere, once objects were moved, oldest first."""
-    state, here = situation.state, _simple_here(situation)
-    if not here:
-        return state.earlier
-    return () if any(one.chance is not None for one in here) else state.doubtful
-
-
-def _simple_here(situation: ObservedSituation) -> list[Explanation]:
-    """Return the simple explanations in the believed frame."""
-    state = situation.state
-    return [one for one in situation.found if is_simple(state, one) and one.frame == state.frame]
+def ends_left(situation: ObservedSituation, chosen: Explanation) -> list[Hypothesis]:
+    """Return the other ends of earlier motions that the newest observation leaves beside the chosen explanation."""
+    state, told = situation.state, chosen.correction and chosen.correction.since
+    ends = [end for end in state.ends if end.since != told]
+    if not ends or chosen.how != "predicted" or state.shaken:  # what contradicts another end may be a slip
+        return ends
+    found = (one.correction for one in reestimate_motions(situation, kept=True))
+    agree = [state.kept_end(other.since, other.shift) for other in found if other is not None]
+    return [end for end in ends if end in agree]
 
 
 def propose_slips(situation: ObservedSituation) -> list[Explanation]:
     """Return where earlier motions may have slipped to, so that no observation is contradicted, the newest first."""
-    motions = reversed(situation.state.earlier)
-    tried = (motion for motion in motions if _has_known_pose(motion, situation))
-    return [one for motion in tried for one in _slips(situation, motion)]
+    return [one for motion in _known_motions(situation) for one in _slips(situation, motion)]
 
 
 def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
     """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known."""
     state, frames = situation.state, [one for one in situation.found if one.remaps and not one.unexplained]
-    turned = any(one.prior_cost <= PLAUSIBLE_COST for one in frames)
+    turned = any(one.prior_cost <= KEPT_ODDS for one in frames)
     simple = any(not one.unexplained for one in situation.found if one.how != "slipped" or state.slipped)
     if not turned:
         return _blocked_elsewhere(situation, state.earlier if simple else state.reestimable)
@@ -86,7 +75,7 @@ def _earlier_walks(situation: ObservedSituation) -> list[Explanation]:
     return [one for one in found if (one.contact_known or one.chance) and (odd or one.frame == state.frame)]
 
 
-def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHypothesis]) -> list[Explanation]:
+def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[StraightMotion]) -> list[Explanation]:
     """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed."""
     state = situation.state
     judged = len(state.observations) if any(one.is_end for one in situation.found) else None
@@ -98,7 +87,7 @@ def _blocked_elsewhere(situation: ObservedSituation, motions: Iterable[MotionHyp
 class CarriedMotion:
     """An earlier straight motion with an object in hand, in the believed frame."""
 
-    def __init__(self, motion: MotionHypothesis, situation: ObservedSituation) -> None:
+    def __init__(self, motion: StraightMotion, situation: ObservedSituation) -> None:
         """Find the ends of a motion with an object in hand."""
         assert motion.in_hand is not None
         state = situation.state
@@ -133,30 +122,34 @@ class CarriedMotion:
         return OPEN if end.progress == 1.0 or any(met) else FREE
 
 
-def _has_known_pose(motion: MotionHypothesis, situation: ObservedSituation) -> bool:
-    """Return whether the pose of the object in hand before a motion is known; True for an empty hand."""
-    before = situation.state.observations[motion.number - 1].moved
-    return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
+def _known_motions(situation: ObservedSituation) -> Iterator[StraightMotion]:
+    """Yield the earlier motions before which the pose of the object in hand is known, the newest first."""
+    for motion in reversed(situation.state.earlier):
+        before = situation.state.observations[motion.number - 1].moved
+        if motion.in_hand is None or any(pose.name == motion.in_hand for pose in before):
+            yield motion
 
 
-def _other_ends(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
+def _other_ends(situation: ObservedSituation, motion: StraightMotion, kept: bool) -> Iterator[Explanation]:
     """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
     state, believed = situation.state, situation.state.observations[motion.number].place
     if situation.prefixes.first(motion.number).contradicted:  # whatever came of the motion
         return
     alone = motion.in_hand is None
     way = WalkInFrame(motion, state.frame, state.observations) if alone else CarriedMotion(motion, situation)
-    others = (end for end in way.ends if math.dist(end.place, believed) >= LINE_DISTANCE)
+    others = [end for end in way.ends if math.dist(end.place, believed) >= LINE_DISTANCE]
+    if kept:
+        others = [end for end in others if state.kept_end(motion.number, end.shift_from(believed))]
     for end, supposed, correction in _consistent(situation, motion, others):
         ahead = way.state_ahead(end, supposed.state.occupancy, _moved_since(supposed.state, motion))
         if ahead == FREE:
             continue
-        newest = supposed.by_frame(state.frame, state.hypotheses)
+        newest = supposed.by_frame(state.frame, state.frames)
         if newest is not None:
             yield _earlier("misled", newest, correction, ahead == OCCUPIED)
 
 
-def _slips(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[Explanation]:
+def _slips(situation: ObservedSituation, motion: StraightMotion) -> Iterator[Explanation]:
     """Yield ends whole squares beside the commanded end of one motion, with which no observation is contradicted."""
     frame = situation.state.frame
     if situation.prefixes.first(motion.number).contradicted:  # whatever came of the motion
@@ -170,7 +163,7 @@ def _slips(situation: ObservedSituation, motion: MotionHypothesis) -> Iterator[E
 
 
 def _consistent(
-    situation: ObservedSituation, motion: MotionHypothesis, ends: Iterable[WalkEnd]
+    situation: ObservedSituation, motion: StraightMotion, ends: Iterable[WalkEnd]
 ) -> Iterator[tuple[WalkEnd, ObservedSituation, WalkCorrection]]:
     """Yield the ends of an earlier motion with which no earlier observation is contradicted, and the situation then."""
     frame, first = situation.state.frame, situation.prefixes.first(motion.number)
@@ -186,11 +179,11 @@ def _newest_after_slip(supposed: ObservedSituation) -> Explanation | None:
     """Return where the newest observation was made after a slip, the likeliest place; None where none fits."""
     state, frame = supposed.state, supposed.state.frame
     if supposed.carries:
-        return supposed.by_frame(frame, state.hypotheses)
+        return supposed.by_frame(frame, state.frames)
     # Where in its square the robot was after the slip is not known.
     near = places_within(frame.place_from_utak(*supposed.commanded_place), (-0.5, -0.5, 0.5, 0.5))
     place = next((place for place in near if not residual_at(supposed, place)), None)
-    return None if place is None else Explanation("slipped", place, frame, 0, 0.0, None, state.hypotheses)
+    return None if place is None else Explanation("slipped", place, frame, 0, 0.0, None, state.frames)
 
 
 def _earlier(how: str, newest: Explanation, correction: WalkCorrection, contact_known: bool) -> Explanation:
@@ -200,13 +193,13 @@ def _earlier(how: str, newest: Explanation, correction: WalkCorrection, contact_
 
 
 def _corrected(
-    situation: ObservedSituation, motion: MotionHypothesis, end: WalkEnd
+    situation: ObservedSituation, motion: StraightMotion, end: WalkEnd
 ) -> tuple[ObservedSituation, WalkCorrection]:
     """Return the situation as it is if an earlier motion ended at `end`, and the correction of everything since."""
     # The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion.
     state = situation.state
     frame, believed = state.frame, state.observations[motion.number].place
-    shift = end.place[0] - believed[0], end.place[1] - believed[1]
+    shift = end.shift_from(believed)
     since = [held for held in state.held_objects.values() if held.since > motion.number]
     seen = tuple((held.name, _object_shift(held, shift, state)) for held in since)
     correction = WalkCorrection(motion.number, shift, seen, motion.in_hand)
@@ -228,7 +221,7 @@ def _object_shift(held: HeldObject, shift: Position, state: TrackerState) -> Pos
     return frame.to_utak(float(east - west), float(north - south))
 
 
-def _moved_since(state: TrackerState, motion: MotionHypothesis) -> frozenset[Square]:
+def _moved_since(state: TrackerState, motion: StraightMotion) -> frozenset[Square]:
     """Return the squares that objects covered when a motion was made, without the object in hand."""
     before = {pose.name: pose for pose in state.observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()

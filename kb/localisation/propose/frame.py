@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
-    FrameHypothesis,
+    Hypothesis,
     any_origin,
     consistent_hypotheses,
     frames_to_try,
@@ -40,7 +40,7 @@ def propose(situation: ObservedSituation) -> list[Explanation]:
     pushed = found.outcome is not None and found.outcome.stopped and isinstance(situation.motion, Translate)
     if simple and pushed and found.frame == state.frame:  # finer proposals of where it was blocked exist already
         return []
-    if found.frame != state.frame or set(found.hypotheses) != set(state.hypotheses):
+    if found.frame != state.frame or set(found.hypotheses) != set(state.frames):
         return [found._replace(prior_cost=state.prior_cost(found.frame.angle))]
     if found.outcome is None or found.outcome.how == "predicted":  # proposed already
         return []
@@ -64,7 +64,7 @@ def _best_frame(situation: ObservedSituation, simple: bool) -> Explanation | Non
             return found
     affordable = MAX_REMAPPED_OBSERVATIONS // (len(situation.state.observations) + 1)
     few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
-    left = _left(situation, situation.state.hypotheses)
+    left = _left(situation, situation.state.frames)
     found = _first_fitting(situation, left, few)
     if found is not None:
         return found
@@ -77,26 +77,24 @@ def _best_frame(situation: ObservedSituation, simple: bool) -> Explanation | Non
 def _other_orientation(situation: ObservedSituation) -> Explanation | None:
     """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none."""
     angle = situation.state.frame.angle
-    others = [other for other in situation.state.hypotheses if other.is_centred and other.angle != angle]
+    others = [other for other in situation.state.frames if other.is_centred and other.angle != angle]
     return _first_fitting(situation, _left(situation, others), MAX_EVALUATED_FRAMES)
 
 
-def _left(situation: ObservedSituation, hypotheses: Iterable[FrameHypothesis]) -> tuple[FrameHypothesis, ...]:
+def _left(situation: ObservedSituation, hypotheses: Iterable[Hypothesis]) -> tuple[Hypothesis, ...]:
     """Return what the last observations leave of some hypotheses, in their order; empty when they refute all."""
     return consistent_hypotheses(situation.judging_observations, hypotheses, situation.unsettled_discs)
 
 
-def _first_fitting(
-    situation: ObservedSituation, hypotheses: tuple[FrameHypothesis, ...], few: int
-) -> Explanation | None:
+def _first_fitting(situation: ObservedSituation, hypotheses: tuple[Hypothesis, ...], few: int) -> Explanation | None:
     """Return the explanation by the likeliest frame that nothing contradicts; None if there is none."""
     frames = frames_to_try(hypotheses, situation.state.frame)[:few]
     return next(filter(None, (situation.by_frame(frame, hypotheses) for frame in frames)), None)
 
 
-def _given_up(situation: ObservedSituation) -> tuple[FrameHypothesis, ...]:
+def _given_up(situation: ObservedSituation) -> tuple[Hypothesis, ...]:
     """Return all hypotheses that observations leave, of orientations near to those that are left."""
-    angles = [situation.state.frame.angle, *(h.angle for h in situation.state.hypotheses)]
+    angles = [situation.state.frame.angle, *(h.angle for h in situation.state.frames)]
     if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
         angles = [situation.state.frame.angle]
     about = range(min(angles) - SEARCHED_ANGLE_MARGIN, max(angles) + SEARCHED_ANGLE_MARGIN + 1)
@@ -109,7 +107,7 @@ def _blocked_motion(situation: ObservedSituation, few: int) -> Explanation | Non
     if not situation.carries:
         return None
     seen, unsettled = situation.state.observations[-MAX_JUDGING_OBSERVATIONS:], situation.unsettled_discs
-    before = consistent_hypotheses(seen, situation.state.hypotheses, unsettled)
+    before = consistent_hypotheses(seen, situation.state.frames, unsettled)
     frames = frames_to_try(before, situation.state.frame)[:few]
     for cut_short in (False, True):
         tried = (situation.by_frame(frame, before, cut_short) for frame in frames)

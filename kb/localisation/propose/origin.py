@@ -14,7 +14,7 @@ from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation,
 from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
 from utak.kb.localisation.hypotheses.reestimation import reestimate_walk
 from utak.kb.localisation.hypotheses.remap import MapReplay, ReplayPrefixes, remap
-from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.hypotheses.walk_outcomes import StraightMotion
 from utak.kb.localisation.known.situation import ObservedSituation
 from utak.kb.perception.frame import CENTRE, Frame
 
@@ -34,7 +34,7 @@ def propose(situation: ObservedSituation) -> list[Explanation]:
 
 
 def blocked_walks_with_origin(
-    motions: Sequence[MotionHypothesis], believed: Frame, observations: Sequence[Observation]
+    motions: Sequence[StraightMotion], believed: Frame, observations: Sequence[Observation]
 ) -> list[Explanation]:
     """Return explanations that one of the last walks was blocked, with another origin, without any contradiction."""
     origins = tuple(exact_hypothesis(replace(believed, origin=place)) for place in COARSE_ORIGINS)

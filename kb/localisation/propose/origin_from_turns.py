@@ -19,7 +19,7 @@ from utak.kb.localisation.hypotheses.carry_outcomes import motion_length, partia
 from utak.kb.localisation.hypotheses.contacts import likeliest_contact_near
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import (
-    FrameHypothesis,
+    Hypothesis,
     OriginBox,
     Position,
     exact_hypothesis,
@@ -71,14 +71,14 @@ def origin_from_turn(situation: ObservedSituation, simple: bool) -> Explanation 
     error = math.hypot(*grid_cell_size(points)) / 2
     tried = (situation.by_frame(point.frame, (point,), origin_error=error) for point in points)
     fitting = [one for one in tried if one is not None]
-    if not fitting and not (simple and len(situation.state.hypotheses) == 1):
+    if not fitting and not (simple and len(situation.state.frames) == 1):
         fitting = _blocked_turns(situation, _bounds(points))
     return _middle(fitting) if fitting else None
 
 
-def _origins_left(situation: ObservedSituation) -> tuple[FrameHypothesis, ...]:
+def _origins_left(situation: ObservedSituation) -> tuple[Hypothesis, ...]:
     """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave."""
-    given = tuple(h for h in situation.state.hypotheses if h.angle == situation.state.frame.angle and h.is_point)
+    given = tuple(h for h in situation.state.frames if h.angle == situation.state.frame.angle and h.is_point)
     return given if len(given) > 1 else origin_grid(situation.state.frame, situation.state.observations)
 
 
@@ -138,7 +138,7 @@ def _cell_slack(cell: TurnOriginCell, length: float) -> float:
     return length * (end - begin) / 2
 
 
-def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
+def _bounds(points: Sequence[Hypothesis]) -> OriginBox:
     """Return the bounds of the cells for which some points of an origin grid stand: (west, south, east, north)."""
     corners, half = np.array([point.box for point in points]), np.array(grid_cell_size(points)) / 2
     west, south = np.maximum(corners[:, :2].min(0) - half, 0.0).tolist()

@@ -13,7 +13,7 @@ from tests.kb.localisation.test_tracker import ROOM
 from utak.kb.body import Impression, Move, Release
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.hypotheses.explanation import Explanation
-from utak.kb.localisation.hypotheses.frames import FrameHypothesis
+from utak.kb.localisation.hypotheses.frames import Hypothesis
 from utak.kb.localisation.known.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN
@@ -160,7 +160,7 @@ def test_in_another_frame_an_object_that_never_moved_is_forgotten() -> None:
         assert list(tracker.state.held_objects) == ["o1"]
         other = Frame(origin=(0.4, 0.6))  # with the same observations
         tracker._apply(
-            Explanation("turned", tracker.state.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),))
+            Explanation("turned", tracker.state.place, other, 0, 0.0, None, (Hypothesis(0, other.origin * 2),))
         )
         assert tracker.state.frame == other
         assert list(tracker.state.held_objects) == ["o1"] * (moved or held)

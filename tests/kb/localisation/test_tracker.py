@@ -15,7 +15,7 @@ from utak.kb.body import Move, Push, Turn
 from utak.kb.localisation.field_account import CellStatus
 from utak.kb.localisation.hypotheses.correction import WalkCorrection
 from utak.kb.localisation.hypotheses.explanation import Explanation, cheapest
-from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
+from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, KEPT_ODDS, Hypothesis
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.objects.held_object import HeldObject
@@ -175,6 +175,7 @@ def errors_after_a_contact(seed: int, remember: bool) -> list[float] | None:
         if not remember:
             tracker.state = replace(tracker.state, motions=())
         tracker.accommodate(Move(*way), impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
+        assert all(end.prior_cost <= KEPT_ODDS for end in tracker.state.ends)
         own = turned(here[0] - origin[0], here[1] - origin[1], -heading)
         off.append(math.dist(tracker.state.frame.place_to_utak(*tracker.state.place), own))
     return off
@@ -251,7 +252,7 @@ def test_an_unchanged_impression_after_a_push_means_that_nothing_moved() -> None
     thing = translate(ELL, 38, 18)  # against the wall already
     tracker = holding(thing, (37.5, 20.5))
     # how the frame lies is known:
-    tracker.state = replace(tracker.state, hypotheses=(FrameHypothesis(0, CENTRE + CENTRE),), confirmations=20)
+    tracker.state = replace(tracker.state, hypotheses=(Hypothesis(0, CENTRE + CENTRE),), confirmations=20)
     found = tracker.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
     assert found.explanation.outcome is not None and found.explanation.outcome.stopped
     assert tracker.state.place == CENTRE

@@ -12,7 +12,7 @@ from utak.kb.localisation.hypotheses.frames import (
     CENTRED_HYPOTHESES,
     FRAME_ANGLES,
     ORIGIN_GRID,
-    FrameHypothesis,
+    Hypothesis,
     Observation,
     UnsettledDisc,
     any_origin,
@@ -53,7 +53,7 @@ def origin(heading: int, point: Point) -> Point:
     return x + 0.5, y + 0.5
 
 
-def holds(hypothesis: FrameHypothesis, angle: int, point: Point) -> bool:
+def holds(hypothesis: Hypothesis, angle: int, point: Point) -> bool:
     """Return whether a hypothesis allows an orientation and an origin."""
     west, south, east, north = hypothesis.box
     slack = 1e-9
@@ -131,7 +131,7 @@ def test_a_wrong_place_is_a_contradiction() -> None:
 
 @given(st.integers(-44, 45), st.tuples(st.floats(-40, 40), st.floats(-40, 40)))
 def test_a_split_covers_the_box_and_separates_squares(angle: int, place: Point) -> None:
-    whole = FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0))
+    whole = Hypothesis(angle, (0.0, 0.0, 1.0, 1.0))
     parts = whole.split(place)
     area = sum(part.area for part in parts)
     assert area == pytest.approx(1.0)
@@ -202,18 +202,18 @@ def test_observations_need_not_agree_where_an_object_was_moved() -> None:
 
 
 def test_a_hypothesis_contains_the_frames_of_its_box() -> None:
-    half = FrameHypothesis(2, (0.0, 0.0, 0.5, 1.0))
+    half = Hypothesis(2, (0.0, 0.0, 0.5, 1.0))
     assert half.contains(Frame(2, (0.2, 0.9)))
     assert not half.contains(Frame(2, (0.7, 0.9)))
     assert not half.contains(Frame(1, (0.2, 0.9)))
-    point = FrameHypothesis(0, CENTRE + CENTRE)
+    point = Hypothesis(0, CENTRE + CENTRE)
     assert point.is_point
     assert point.contains(Frame())
     assert not point.contains(Frame(0, (0.5, 0.6)))
 
 
 def test_of_one_orientation_the_largest_box_is_tried_first() -> None:
-    boxes = (FrameHypothesis(0, (0.0, 0.0, 0.1, 0.1)), FrameHypothesis(0, (0.6, 0.0, 1.0, 1.0)))
+    boxes = (Hypothesis(0, (0.0, 0.0, 0.1, 0.1)), Hypothesis(0, (0.6, 0.0, 1.0, 1.0)))
     assert frames_to_try(boxes, Frame())[0].origin == (0.8, 0.5)
 
 
@@ -227,13 +227,13 @@ def test_true_observations_rarely_leave_a_cramped_origin() -> None:
             at = int(np.searchsorted(cuts, origin))
             box.append((cuts[at - 1], cuts[at]))
         (west, east), (south, north) = box
-        found += is_cramped([FrameHypothesis(3, (west, south, east, north))], observations)
+        found += is_cramped([Hypothesis(3, (west, south, east, north))], observations)
     assert found / tried < 0.02
 
 
 def test_a_thin_box_is_cramped_whatever_its_length() -> None:
-    assert is_cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
-    assert not is_cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402)), FrameHypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
+    assert is_cramped([Hypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
+    assert not is_cramped([Hypothesis(1, (0.1, 0.4, 0.9, 0.402)), Hypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
     assert not is_cramped(CENTRED_HYPOTHESES[:2], 3)
     assert not is_cramped([], 3)
 

@@ -11,8 +11,8 @@ from utak.geometry.counts.gibbs import CORNER_COST
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
     CENTRED_HYPOTHESES,
-    PLAUSIBLE_COST,
-    FrameHypothesis,
+    KEPT_ODDS,
+    Hypothesis,
     Observation,
     consistent_hypotheses,
     prune_hypotheses,
@@ -47,7 +47,7 @@ def cost(occupancy: OccupancyMap) -> float:
     return sketch.cost(0.0)
 
 
-def likeliest(hypotheses: tuple[FrameHypothesis, ...]) -> int:
+def likeliest(hypotheses: tuple[Hypothesis, ...]) -> int:
     return min(hypotheses, key=lambda h: h.prior_cost).angle
 
 
@@ -66,7 +66,7 @@ def test_the_best_frame_costs_nothing_and_untried_frames_are_unlikely() -> None:
     assert [h.angle for h in found] == [h.angle for h in CENTRED_HYPOTHESES]
     assert min(h.prior_cost for h in found) == 0.0
     assert sum(h.prior_cost == UNTRIED_COST for h in found) > 25
-    assert sum(h.prior_cost <= PLAUSIBLE_COST for h in found) <= 8
+    assert sum(h.prior_cost <= KEPT_ODDS for h in found) <= 8
 
 
 @pytest.mark.long
@@ -102,9 +102,7 @@ def observations_in_a_long_room(heading: int, origin: Point, seed: int) -> list[
 def test_later_observations_correct_an_orientation_by_one_degree(heading: int) -> None:
     for seed in range(3):
         observations = observations_in_a_long_room(heading, CENTRE, seed)
-        left: tuple[FrameHypothesis, ...] = tuple(
-            h._replace(prior_cost=40.0 * (h.angle != 0)) for h in CENTRED_HYPOTHESES
-        )
+        left: tuple[Hypothesis, ...] = tuple(h._replace(prior_cost=40.0 * (h.angle != 0)) for h in CENTRED_HYPOTHESES)
         for number in range(1, len(observations) + 1):
             left = weigh_hypotheses(prune_hypotheses(left, observations[:number]), observations[:number])
         assert likeliest(left) == heading
@@ -122,9 +120,9 @@ def test_a_single_observation_does_not_depend_on_the_origin() -> None:
 
 def test_a_smaller_part_of_the_square_is_a_less_likely_origin() -> None:
     observations = observations_in_a_long_room(1, CENTRE, 0)[:4]
-    own = FrameHypothesis(1, CENTRE * 2, prior_cost=1.0)
+    own = Hypothesis(1, CENTRE * 2, prior_cost=1.0)
     half, whole = (
-        weigh_hypotheses([FrameHypothesis(0, (0.4, 0.4, east, 0.6), prior_cost=1.0), own], observations)[0].prior_cost
+        weigh_hypotheses([Hypothesis(0, (0.4, 0.4, east, 0.6), prior_cost=1.0), own], observations)[0].prior_cost
         for east in (0.5, 0.6)
     )
     assert half == pytest.approx(whole + math.log(2))

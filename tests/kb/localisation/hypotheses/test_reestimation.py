@@ -11,7 +11,7 @@ from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
 from utak.kb.localisation.hypotheses.reestimation import reestimate_walk
-from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
+from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, StraightMotion, line_crossings
 from utak.kb.perception.frame import Frame, turned
 from utak.kb.perception.retina import count_ranges
 
@@ -41,7 +41,7 @@ def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) ->
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
         observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
     assume(math.dist(own, way) > 2 * LINE_DISTANCE)
-    found = list(reestimate_walk(MotionHypothesis(1, way, CENTRED_HYPOTHESES), Frame(), observations))
+    found = list(reestimate_walk(StraightMotion(1, way, CENTRED_HYPOTHESES), Frame(), observations))
     told = [(one, one.correction.observations(observations)) for one in found if one.correction is not None]
     assert len(told) == len(found)
     right = [one for one, there in told if one.frame.angle == heading and math.dist(there[1].place, own) < 1e-3]
@@ -57,5 +57,5 @@ def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
-    told = list(reestimate_walk(MotionHypothesis(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1]), Frame(), observations))
+    told = list(reestimate_walk(StraightMotion(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1]), Frame(), observations))
     assert told == []

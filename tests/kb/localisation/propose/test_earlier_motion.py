@@ -19,7 +19,7 @@ from utak.kb.body import Move, Push
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
 from utak.kb.localisation.hypotheses.remap import object_pose, remap
-from utak.kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from utak.kb.localisation.hypotheses.walk_outcomes import StraightMotion
 from utak.kb.localisation.known.situation import ObservedSituation
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.localisation.propose.earlier_motion import reestimate_motions
@@ -31,7 +31,7 @@ SIDE = 34
 BRICK = shapely.box(0, 0, 3, 2)
 Point = tuple[float, float]
 Scene = tuple[
-    ObservedSituation, MotionHypothesis, Point, shapely.Polygon
+    ObservedSituation, StraightMotion, Point, shapely.Polygon
 ]  # the situation, the motion to re-estimate, its true shift, and the true outline of the object
 seeds = st.integers(0, 2**32 - 1)
 
@@ -57,12 +57,12 @@ def square_of(point: Point) -> tuple[int, int]:
 
 def right(
     situation: ObservedSituation,
-    motion: MotionHypothesis,
+    motion: StraightMotion,
     shift: Point,
     thing: shapely.Polygon,
 ) -> list[Explanation]:
     """Return the proposals that are right about both the shift of the motion and the place of the object."""
-    found = reestimate_motions(situation, [motion])
+    found = reestimate_motions(situation.supposing(motions=(motion,)), kept=False)
     for one in found:
         assert one.residual == 0
         assert one.correction is not None and one.correction.since == motion.number
@@ -141,7 +141,7 @@ def walked_and_pushed(rng: np.random.Generator) -> Scene | None:
     after = observe(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
     situation = situated(Push(*far), after, observations, held, in_hand=True)
     true = translate(thing, far[0] + CENTRE[0] - origin[0], far[1] + CENTRE[1] - origin[1])
-    return situation, MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), shift, true
+    return situation, StraightMotion(1, way, CENTRED_HYPOTHESES[:1]), shift, true
 
 
 @pytest.mark.long
@@ -175,4 +175,4 @@ def pushed_and_walked(rng: np.random.Generator) -> Scene | None:
     taken = first._replace(moved=(object_pose(HeldObject("o1", lies, lies, since=1), frame),))
     pushed = observe(there, plus(origin, went), way)._replace(moved=(object_pose(held, frame),))
     situation = situated(Move(*walk), observe(there, end, plus(way, walk)), [first, taken, pushed], held, in_hand=False)
-    return situation, MotionHypothesis(2, way, CENTRED_HYPOTHESES[:1], in_hand="o1"), shift, translate(lies, *went)
+    return situation, StraightMotion(2, way, CENTRED_HYPOTHESES[:1], in_hand="o1"), shift, translate(lies, *went)

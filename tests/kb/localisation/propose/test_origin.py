@@ -17,7 +17,7 @@ from utak.kb.localisation.hypotheses.frames import (
     count_contradictions,
     observation_squares,
 )
-from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
+from utak.kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, StraightMotion, line_crossings
 from utak.kb.localisation.propose.origin import COARSE_ORIGINS, blocked_walks_with_origin
 from utak.kb.perception.frame import Frame, turned
 from utak.kb.perception.retina import count_ranges
@@ -55,7 +55,7 @@ def test_the_true_origin_and_contact_are_among_the_proposals(seed: int, origin: 
         i, j = (math.floor(v) for v in true.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
         observations.append(Observation(seen, (place[0] + east, place[1] + north)))
-    found = blocked_walks_with_origin([MotionHypothesis(1, way, CENTRED_HYPOTHESES)], held, observations)
+    found = blocked_walks_with_origin([StraightMotion(1, way, CENTRED_HYPOTHESES)], held, observations)
     squares = [observation_squares(one.frame, corrected(one, observations)).tolist() for one in found]
     assert (
         observation_squares(
@@ -76,13 +76,13 @@ def test_a_larger_part_of_the_square_is_a_likelier_origin() -> None:
     observations = [
         Observation(ranges, place) for ranges, place in zip(seen, [(0.0, 0.0), (12.0, 0.0), (7.6, 0.3)], strict=True)
     ]
-    found = blocked_walks_with_origin([MotionHypothesis(1, (12.0, 0.0), CENTRED_HYPOTHESES)], Frame(), observations)
+    found = blocked_walks_with_origin([StraightMotion(1, (12.0, 0.0), CENTRED_HYPOTHESES)], Frame(), observations)
     shares = [len(one.hypotheses) / len(COARSE_ORIGINS) for one in found]
     assert len(set(shares)) > 1
     for one, share in zip(found, shares, strict=True):
         assert one.prior_cost == pytest.approx(OFF_CENTRE_COST - math.log(share))
     again = blocked_walks_with_origin(
-        [MotionHypothesis(1, (12.0, 0.0), CENTRED_HYPOTHESES)], Frame(0, (0.4, 0.5)), observations
+        [StraightMotion(1, (12.0, 0.0), CENTRED_HYPOTHESES)], Frame(0, (0.4, 0.5)), observations
     )  # the origin is known
     assert [one.prior_cost for one in again] == pytest.approx([one.prior_cost - OFF_CENTRE_COST for one in found])
 
@@ -92,6 +92,5 @@ def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
     assert (
-        blocked_walks_with_origin([MotionHypothesis(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1])], Frame(), observations)
-        == []
+        blocked_walks_with_origin([StraightMotion(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1])], Frame(), observations) == []
     )
