@@ -92,7 +92,9 @@ def part_gap(rng: np.random.Generator, seed: int) -> OddWorld | None:
 def _length(rng: np.random.Generator, whole: bool, low: float, high: float) -> float:
     """Return a length between two others: whole, or of two decimals."""
     return (
-        float(rng.integers(int(np.ceil(low)), max(int(high), int(np.ceil(low))) + 1)) if whole else real(rng, low, high)
+        float(rng.integers(int(np.ceil(low)), max(int(high), int(np.ceil(low))) + 1))
+        if whole
+        else real(rng, low, max(low, high))
     )
 
 
