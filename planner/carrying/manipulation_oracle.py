@@ -49,7 +49,7 @@ TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of square
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
 MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
 MOTION_PARTS = (1, 2, 4)  # parts in which a motion is made where users' rules forbid it otherwise; a convention
-SAME_PLACE = 1e-6  # squares within which the robot is where a plan begins: rounding only
+AT_PLACE = 1e-6  # squares within which the robot is where a plan begins: rounding only
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
 CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
 WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on random worlds (benchmarks.campaign)
@@ -274,7 +274,7 @@ def _refusal(found: ManipulationPlan, situation: Situation, node: Node) -> str:
     """Return why the steps of a plan may not be done, in words; "" where they may."""
     model = situation.model
     legs = [shifted(leg, model.view.west, model.view.south) for leg in found.plan.legs]
-    grasped = model.held == node.name and math.dist(legs[0].place, model.place) < SAME_PLACE
+    grasped = model.held == node.name and math.dist(legs[0].place, model.place) < AT_PLACE
     first = () if model.held is None or grasped else (release(model.held),)
     return refusal((*first, *of_legs(node.name, legs, grasped, model)), situation)
 

@@ -11,7 +11,7 @@ COMMANDS = ["?-", ";", "assume", "back", "diff", "facts", "goal", "goto", "help"
 FACTS = ["kind(o1,object,90).", "kind(o12,object,30).", "in(org,r1).", "in(o1,r2).", "door(d1).", "bound(x,o1)."]
 FACTS += ["plan(0,carry(o1,g1_r2)).", "serves(0,g1).", "price(5,5,proved)."]
 OFFERED = {
-    "st": {"step", "stretch("},
+    "st": {"step", "step(", "stretch("},
     "g": {"given(", "goal", "goal(", "goto"},
     "sha": {"shape("},
     "?- sha": {"shape("},
@@ -24,7 +24,7 @@ OFFERED = {
     "?- bound(": {"x", "y"},
     "?- bound(x, ": {"floor", "o1", "o12", "org", "utak", "verge"} - {"floor", "utak", "verge"},
     "?- door(": {"d1"},
-    "?- plan(0, c": {"carry(", "carry(o1,g1_r2)", "clear("},
+    "?- plan(0, c": {"carry(", "carry(o1,g1_r2)", "clear(", "confirm("},
     "?- serves(I, ": {"g1"},
     "?- price(K, L, p": {"proved"},
     "?- means(G, in": {"in("},

@@ -111,8 +111,10 @@ def test_a_step_without_a_plan_is_said_to_have_none(
         (tmp_path / name).write_text(text)
     assert main(["plan", str(tmp_path), "--at", "0", "--json"]) == 1
     said = capsys.readouterr()
-    assert json.loads(said.out) == {"step": 0, "plan": None}
-    assert "step 0 has no plan\n" in said.err
+    plan = json.loads(said.out)["plan"]
+    assert (plan["found"], [step["step"] for step in plan["steps"]]) == (False, ["pursue(robot)"])
+    assert [step["step"].partition("(")[0] for step in plan["robot"]] == ["go", "look"]
+    assert "step 0 has no plan that attains all goals\n" in said.err
     assert main(["plan", str(run / "ep.jsonl"), "--at", "99"]) == 65
 
 
