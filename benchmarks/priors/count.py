@@ -112,7 +112,7 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
 
 
 def counted_movables(tried: Iterable[TriedSeen]) -> Iterator[Counted]:
-    """Yield how many objects that no motion had moved could be moved, by how many in a row had not moved them."""
+    """Yield how many objects that no motion had moved could be moved, by how many ways they were tried."""
     seen = list(tried)
     for unmoved in UNMOVED:
         there = [one.movable for one in seen if unmoved.holds(one.unmoved)]

@@ -42,8 +42,8 @@ WORDS = {
     ),
     "counted_movable": (
         "L, U, W",
-        "Of 1000 objects that no motion had moved and the last L to U in a row had not, W could be moved.",
-        "of 1000 objects that the last {L} to {U} motions had not moved, and none before, {W} could be moved",
+        "Of 1000 objects that no motion had moved, and that were tried L to U ways, W could be moved.",
+        "of 1000 objects that were tried {L} to {U} ways, and that no motion had moved, {W} could be moved",
     ),
     "counted_place": (
         "K, L, U, W",
