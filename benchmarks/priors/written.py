@@ -66,6 +66,12 @@ WORDS = {
         "Of 1000 likeliest squares of case K with L to U thousandths of the likelihood, W were that of the robot.",
         "of 1000 likeliest squares of case {K} with {L} to {U} thousandths, {W} were that of the robot",
     ),
+    "counted_look": (
+        "K, L, U, W",
+        "Of 1000 looks of kind K (explore, settle or pass) for a thing that nobody saw, with L to U squares never seen "
+        "in sight, W would have shown it.",
+        "of 1000 looks of kind {K} with {L} to {U} squares never seen in sight, {W} would have shown what was missing",
+    ),
     "counted_wall": (
         "K, S, W",
         "In W of 1000 places of walls of kind K that were never felt, a thing began as wide as a doorway, or smaller "
