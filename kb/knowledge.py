@@ -219,7 +219,7 @@ class Knowledge:
         for load in self.memory.held_objects.values():
             model, patch = lay_upon(model, load)
             objects += (held_node(load, patch, int(model.labels.max())),)
-        nodes = with_movability(sorted(objects, key=lambda node: int(node.name[1:])), self.rules)
+        nodes = with_movability(sorted(objects, key=lambda node: int(node.name[1:])), model, self.rules)
         self.objects = with_persistence(nodes, self.memory, self.rules)
         self.tracker.keep_things(
             {node.name: frozenset(node.patch.squares()) for node in self.objects if node.name not in held}

@@ -4,6 +4,7 @@ Modules, in reading order:
 
 measures  what confidences are conditioned on, with what is true
 whereabouts  the same of what may be besides what was seen
+looks     the same of looks for what nobody saw
 walls     the same of walls that are felt, and the worlds for that
 bins      into which bins measures fall
 count     how often each alternative was true

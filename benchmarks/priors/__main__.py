@@ -2,12 +2,14 @@
 
     python -m benchmarks.priors --worlds 250 --seed 5000 [--noise 0,0.05] [--samples FILE] [--to kb/asp]
     python -m benchmarks.priors --walls ...      (planner/asp/priors_of_walls.lp)
+    python -m benchmarks.priors --looks ...      (planner/asp/priors_of_looks.lp)
 
 Worlds are of all kinds, dealt as benchmarks.calibration deals them; give another seed than there. Every moment counts
 alike: the first step, the last one, and those in between that part the run evenly. With --walls two of three worlds
-have doorways that things fill, there is no noise, and the moments are all those at which walls are felt. Progress goes
-to stderr. --samples keeps what was measured, a JSON line a moment; with --recount it is counted again, for other bins,
-without any run.
+have doorways that things fill, there is no noise, and the moments are all those at which walls are felt. With --looks
+the worlds are those of tasks 3, 5, 6 and 9 of benchmarks.worlds.makers, and the moments all at which the robot chooses
+where to look. Progress goes to stderr. --samples keeps what was measured, a JSON line a moment; with --recount it is
+counted again, for other bins, without any run.
 """
 
 import argparse
@@ -27,6 +29,7 @@ from benchmarks.priors.count import (
     counted_classes,
     counted_joints,
     counted_kinds,
+    counted_looks,
     counted_movables,
     counted_pieces,
     counted_places,
@@ -35,6 +38,7 @@ from benchmarks.priors.count import (
     counted_walls,
     counted_whereabouts,
 )
+from benchmarks.priors.looks import LookSeen, looks_seen, with_things
 from benchmarks.priors.measures import (
     FitSeen,
     PlaceSeen,
@@ -193,6 +197,15 @@ DECIDING = {
         whole="feel.lp",
         worlds="two of three of benchmarks.plugs, the others of all kinds",
     ),
+    "looks": Deciding(
+        file="priors_of_looks.lp",
+        dealt=with_things,
+        seen=looks_seen,
+        row=LookSeen,
+        counted=counted_looks,
+        whole="the search for things",
+        worlds="of tasks 3, 5, 6 and 9",
+    ),
 }
 
 
@@ -207,14 +220,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--samples", type=Path, help="what was measured, a JSON line a moment; added to")
     parser.add_argument("--recount", action="store_true", help="count again what --samples holds; the rest as it was")
     parser.add_argument("--to", type=Path, help="the folder of the files (kb/asp, or planner/asp)")
-    parser.add_argument(
-        "--walls",
-        dest="counting",
-        action="store_const",
-        const="walls",
-        default="",
-        help="count walls that are felt, instead",
-    )
+    instead = parser.add_mutually_exclusive_group()
+    for name, what in (("walls", "walls that are felt"), ("looks", "looks for things")):
+        instead.add_argument(
+            f"--{name}", dest="counting", action="store_const", const=name, default="", help=f"count {what}, instead"
+        )
     return parser
 
 

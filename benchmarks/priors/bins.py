@@ -66,7 +66,9 @@ PASSAGE = {"near": bins(0, 2, 3), "further": WHOLE, "wall": bins(0, 30), "open":
 PLUG = {"slim": bins(0, 2, 3, 5), "broad": bins(0, 3, 5), "wide": bins(0, 3, 5)}
 # Of the likeliest square in which the robot may stand, by case: bins of its share of the likelihood, thousandths.
 STANDING = {"unsure": bins(0, 600, 900), "slips": bins(0, 600, 900), "unexplained": bins(0, 900)}
-UNMOVED = bins(0, 1, 2)  # motions in a row that did not move an object which no motion has moved
+UNMOVED = bins(0, 1, 2)  # ways in which an object was tried that no motion has moved
+# Of looks for what nobody saw, by their kind: bins of the squares never seen that come into sight.
+LOOK = {"explore": bins(0, 50, 100, 200, 400), "settle": WHOLE, "pass": WHOLE}
 NONE_MISFIT = bins(0, 3)  # squares of misfit of the first class, where that is not the true one
 BEHIND = bins(0, 3)  # squares that another class leaves wrong beyond the first one
 # Of facts about places, by case (kb/world/chances.py): bins of what was measured.

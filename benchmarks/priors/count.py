@@ -12,6 +12,7 @@ from benchmarks.priors.bins import (
     EXTENT,
     JOINED,
     LEAD,
+    LOOK,
     MASS,
     MISFIT,
     NONE_MISFIT,
@@ -27,6 +28,7 @@ from benchmarks.priors.bins import (
     Bin,
     bin_of,
 )
+from benchmarks.priors.looks import LookSeen
 from benchmarks.priors.measures import FitSeen, PlaceSeen, RegionSeen, TriedSeen
 from benchmarks.priors.walls import WIDTHS, WallSeen
 from benchmarks.priors.whereabouts import MeasuredSeen, PieceSeen, WhereaboutSeen
@@ -112,7 +114,7 @@ def counted_classes(fits: Iterable[FitSeen]) -> Iterator[Counted]:
 
 
 def counted_movables(tried: Iterable[TriedSeen]) -> Iterator[Counted]:
-    """Yield how many objects that no motion had moved could be moved, by how many in a row had not moved them."""
+    """Yield how many objects that no motion had moved could be moved, by how many ways they were tried."""
     seen = list(tried)
     for unmoved in UNMOVED:
         there = [one.movable for one in seen if unmoved.holds(one.unmoved)]
@@ -138,6 +140,11 @@ def counted_stretches(stretches: Iterable[MeasuredSeen]) -> Iterator[Counted]:
 def counted_squares(squares: Iterable[MeasuredSeen]) -> Iterator[Counted]:
     """Yield how many likeliest squares were those in which the robot stood, by case and share of the likelihood."""
     return _counted_by_case("counted_square", STANDING, squares)
+
+
+def counted_looks(looks: Iterable[LookSeen]) -> Iterator[Counted]:
+    """Yield how many looks of each kind would have shown a thing never seen, by the squares that they show."""
+    return _counted_by_case("counted_look", LOOK, looks)
 
 
 def counted_walls(walls: Iterable[WallSeen]) -> Iterator[Counted]:

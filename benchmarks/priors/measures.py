@@ -48,7 +48,7 @@ class PlaceSeen(NamedTuple):
 class TriedSeen(NamedTuple):
     """An object that no motion has moved, as kb/asp/movable.lp is given it."""
 
-    unmoved: int  # how many of the last motions in a row did not move it
+    unmoved: int  # in how many ways it was tried, none of which moved it
     movable: bool  # in truth
 
 
@@ -142,7 +142,7 @@ def places_seen(look: LookedAt) -> Iterator[PlaceSeen]:
 
 def tried_seen(look: LookedAt) -> Iterator[TriedSeen]:
     """Yield the objects that no motion has moved, which are objects in truth."""
-    unmoved = {node.name: node.stuck for node in look.model.objects if not node.moved}
+    unmoved = {node.name: len(set(node.resisted)) for node in look.model.objects if not node.moved}
     for statement in statements(look.moment, ("movable",)):
         node = atom_parts(statement.fact)[1][0]
         if node in unmoved and look.moment.nodes[node].kind == "object":

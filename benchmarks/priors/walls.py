@@ -7,11 +7,12 @@ from typing import NamedTuple
 from benchmarks.calibration.dealt import PLUG_PREFIX, dealt
 from benchmarks.calibration.runs import LookedAt
 from benchmarks.claims.asked import Asked
-from benchmarks.worlds.filled.doorplugs import PLUG_KINDS, PLUG_TASKS
+from benchmarks.worlds.filled.doorplugs import PLUG_TASKS
 from utak.planner.screen.projection import CostMaps
 from utak.planner.sights.walls import DOORWAY_WIDTH, stretches_in_question, walls_in_question
 
 WIDTHS = ("doorway", "square")
+COUNTED_PLUGS = ("flush", "recessed", "out", "two", "closed")  # kinds of benchmarks.worlds.filled.doorplugs
 
 
 class WallSeen(NamedTuple):
@@ -24,7 +25,7 @@ class WallSeen(NamedTuple):
 
 def with_plugs(count: int, seed: int) -> Iterator[tuple[Asked, float]]:
     """Yield `count` worlds without noise: two of three with doorways that things fill, the others of all kinds."""
-    kinds, tasks = (PLUG_PREFIX + kind for kind in PLUG_KINDS), range(1, len(PLUG_TASKS) + 1)
+    kinds, tasks = (PLUG_PREFIX + kind for kind in COUNTED_PLUGS), range(1, len(PLUG_TASKS) + 1)
     filled = (Asked(kind, one, task) for one, kind, task in product(range(seed, seed + count), [*kinds], tasks))
     first = 2 * count // 3
     yield from chain(((asked, 0.0) for asked in islice(filled, first)), dealt(count - first, seed, [0.0]))

@@ -42,8 +42,8 @@ WORDS = {
     ),
     "counted_movable": (
         "L, U, W",
-        "Of 1000 objects that no motion had moved and the last L to U in a row had not, W could be moved.",
-        "of 1000 objects that the last {L} to {U} motions had not moved, and none before, {W} could be moved",
+        "Of 1000 objects that no motion had moved, and that were tried L to U ways, W could be moved.",
+        "of 1000 objects that were tried {L} to {U} ways, and that no motion had moved, {W} could be moved",
     ),
     "counted_place": (
         "K, L, U, W",
@@ -65,6 +65,12 @@ WORDS = {
         "K, L, U, W",
         "Of 1000 likeliest squares of case K with L to U thousandths of the likelihood, W were that of the robot.",
         "of 1000 likeliest squares of case {K} with {L} to {U} thousandths, {W} were that of the robot",
+    ),
+    "counted_look": (
+        "K, L, U, W",
+        "Of 1000 looks of kind K (explore, settle or pass) for a thing that nobody saw, with L to U squares never seen "
+        "in sight, W would have shown it.",
+        "of 1000 looks of kind {K} with {L} to {U} squares never seen in sight, {W} would have shown what was missing",
     ),
     "counted_wall": (
         "K, S, W",

@@ -13,6 +13,7 @@ import numpy as np
 
 from utak.geometry.motion.first_contact import ContactBody, Obstacles
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
+from utak.kb.body import Push, Turn
 from utak.kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from utak.kb.localisation.hypotheses.contacts import Obstructions
 from utak.kb.localisation.hypotheses.explanation import Explanation
@@ -21,6 +22,7 @@ from utak.kb.localisation.hypotheses.remap import RemapCache
 from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square, outline_tolerance
+from utak.kb.objects.movability import way_of
 
 MIN_THWARTED_MOTIONS = 2  # motions without effect or reason from which the place of an object is inexact; tuned
 MIN_MOVED_DISTANCE = 0.2  # squares: an object blocked before this did not move; tuned
@@ -29,13 +31,15 @@ LEANING_STEP = 0.1  # squares between the tried places
 TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touches it; tuned
 
 
-def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
-    """Return an object in hand after a motion: with its new outline (shapely Polygon, in squares, map frame)."""
+def object_after(
+    held: HeldObject, outcome: CarryOutcome | None, residual: int, way: str, suspected: bool = False
+) -> HeldObject:
+    """Return an object in hand after a motion some way: with its new outline (shapely Polygon, squares, map frame)."""
     held = replace(held, unexplained=max(held.unexplained, residual))
     if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(held.polygon):
         thwarted = held.thwarted + (held.proven and not suspected)
         inexact = held.inexact or thwarted >= MIN_THWARTED_MOTIONS
-        return replace(held.resisted(), thwarted=thwarted, inexact=inexact)
+        return replace(held, resisted=(*held.resisted, way), thwarted=thwarted, inexact=inexact)
     if outcome.insets is not None:
         held = held.inset(outcome.insets) or held
     slack = held.slack if outcome.as_commanded else max(held.slack, outline_tolerance(outcome.polygon))
@@ -43,7 +47,7 @@ def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, 
     whole = held.whole or not (residual or outcome.stopped)
     moved = replace(moved, empty=moved.empty | outcome.contact_squares, whole=whole)
     unmoved = outcome.how == "blocked" and held.polygon.hausdorff_distance(outcome.polygon) < MIN_MOVED_DISTANCE
-    return replace(moved, stuck=held.stuck + 1) if unmoved else moved
+    return replace(moved, resisted=(*held.resisted, way)) if unmoved else moved
 
 
 def lean_on_obstacle(
@@ -81,7 +85,9 @@ def moved_object(situation: ObservedSituation, chosen: Explanation, suspected: f
     """Return the object in hand after the chosen outcome of a motion: its outline, map frame, and what else changed."""
     state, held, place = situation.state, situation.held, chosen.place
     inexact = replace(held, inexact=held.inexact or state.slipped)
-    carried = object_after(inexact, chosen.outcome, chosen.unexplained, bool(suspected))
+    assert isinstance(situation.command, Push | Turn)
+    way = way_of(situation.command)
+    carried = object_after(inexact, chosen.outcome, chosen.unexplained, way, bool(suspected))
     if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
         known = Obstructions(state.occupancy, place, carried.polygon, situation.motion).known
 

@@ -60,7 +60,7 @@ class HeldObject:
     # Numbers of the impressions, from 0, that support it; every impression of it is added
     support: tuple[int, ...] = ()
     proven: bool = False  # Whether it was seen to move
-    stuck: int = 0  # How many of the last motions in a row did not move it
+    resisted: tuple[str, ...] = ()  # The ways (`way_of`) of the last motions in a row, none of which moved it
     since: int = 0  # How many impressions had been received when it was first held
     # Additional tolerance in squares: where the robot stands in its square, and so the centre of its turns, is not
     # known exactly
@@ -139,7 +139,7 @@ class HeldObject:
     def moved(self, polygon: Any, slack: float, degrees: float = 0.0, commanded: bool = False) -> "HeldObject":
         """Return the object after a motion that it was seen to make."""
         stopped, turned = self.stopped or not commanded, self.turned + degrees
-        return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
+        return replace(self.lying(polygon, slack), turned=turned, proven=True, resisted=(), stopped=stopped)
 
     def lying(self, polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> "HeldObject":
         """Return the object at another place, of which no impression has shown anything yet."""
@@ -190,10 +190,6 @@ class HeldObject:
     def woken(self, far: float) -> "HeldObject":
         """Return the object if the point where the robot woke is known within a distance."""
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
-
-    def resisted(self) -> "HeldObject":
-        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one."""
-        return replace(self, stuck=self.stuck + 1)
 
 
 def held_or_moved(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, HeldObject]:

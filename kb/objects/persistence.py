@@ -46,5 +46,5 @@ def persistences(
     facts = [f"removed({changes.removed})", f"checked({checks})", *(f"thing({name})" for name in things)]
     facts += [f"out_of_sight({name},{many})" for name, many in zip(things, unseen.tolist(), strict=True) if many]
     facts += [] if changes.since is None else [f"since_change({changes.since})"]
-    decided = decided_of_things(PERSISTENCE, facts, rules, world, ("by_count", "persists", "looked_at_again"))
-    return {name: Persistence(*one) for name, one in decided.items()}
+    percents, marks = decided_of_things(PERSISTENCE, facts, rules, world, ("by_count", "persists"))
+    return {name: Persistence(percent, f"looked_at_again({name})" in marks) for name, percent in percents.items()}

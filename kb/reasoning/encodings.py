@@ -21,7 +21,7 @@ SHARED_FILES = {
     "chances": ("priors_of_whereabouts",),
     "feel": ("priors_of_walls",),
 }
-COUNTED_FACTS = ("priors_of_places",)  # files of facts alone, which Python reads
+COUNTED_FACTS = ("priors_of_places", "priors_of_looks")  # files of facts alone, which Python reads
 SHARED_PARTS = frozenset(
     [*COUNTED_FACTS, *(name for names in SHARED_FILES.values() for name in names)]
 )  # they are no encodings by themselves

@@ -6,6 +6,7 @@ invent a region, a neck or an object.
 
 from collections.abc import Mapping
 
+from utak.kb.body import DIRECTIONS
 from utak.kb.language.arguments import (
     COLOUR_ARGUMENT,
     NAME_ARGUMENT,
@@ -134,6 +135,7 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
 TRANSIENT_NUMBERS = frozenset({"neck", "convex corner", "halt"})
 ROLE_ARGUMENT = word_argument("role", ("bounds", "wall", "thing"))  # that a region is taken for
+WAY_ARGUMENT = word_argument("way", (*DIRECTIONS, "left", "right"))  # of a motion of a thing
 CASE_ARGUMENT = word_argument(
     "case",
     ("bounding", "island", "own_colour", "isolated", "felt_verge", "felt_long", "undecided"),
@@ -175,15 +177,12 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("not_taken", 2): (REGION_ARGUMENT, ROLE_ARGUMENT),
     },
     "movable": {
-        ("thing", 1): (NODE_ARGUMENT,),
         ("kind", 3): (NODE_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("trusted", 1): (NODE_ARGUMENT,),
-        ("felt_first", 1): (NODE_ARGUMENT,),
-        ("length", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
-        ("moved", 1): (NODE_ARGUMENT,),
-        ("unmoved", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
-        ("tried", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("movable", 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("resisted", 3): (NODE_ARGUMENT, WAY_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(name, 1): (NODE_ARGUMENT,) for name in ("thing", "trusted", "felt_first", "moved")},
+        **{(name, 2): (NODE_ARGUMENT, WAY_ARGUMENT) for name in ("room_on", "untried")},
+        **{(name, 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT) for name in ("length", "unmoved")},
+        **{(name, 2): (NODE_ARGUMENT, CONFIDENCE_ARGUMENT) for name in ("tried", "movable")},
     },
     "persistence": {
         **{(name, 1): (NODE_ARGUMENT,) for name in ("thing", "watched", "looked_at_again")},
@@ -398,8 +397,8 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
     {
         ("region", 3), ("stated", 2), ("weight", 2), ("choice", 2), ("rest", 2), ("alone", 1), ("neck", 5),
         ("convex", 3), ("wanted", 1), ("candidate", 2), ("seen", 4), ("fit", 4), ("cut", 1), ("length", 2),
-        ("unmoved", 2), ("tried", 2), ("described", 2), ("place", 3), ("counted_solid", 4),
-        ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
+        ("unmoved", 2), ("resisted", 3), ("room_on", 2), ("untried", 2), ("tried", 2), ("described", 2), ("place", 3),
+        ("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
     }
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them

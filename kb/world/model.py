@@ -69,7 +69,8 @@ class Node:
     moved: bool = False  # Whether the robot has moved it
     whole: bool = False  # Whether it was seen to move as one thing
     turned: float = 0.0  # Degrees by which it was turned since it was first held, counter-clockwise positive
-    stuck: int = 0  # How many of the last motions in a row did not move it
+    resisted: tuple[str, ...] = ()  # The ways (`way_of`) of the last motions in a row, none of which moved it
+    untried: tuple[str, ...] = ()  # The ways in which it is tried next, as it did not move, by kb/asp/movable.lp
     # Whether it may well lie elsewhere, or have another outline: what is seen agrees ill with how it came there
     dubious: bool = False
     inexact: bool = False  # Whether its place is known only roughly
@@ -80,6 +81,11 @@ class Node:
     short: SideValues = NO_INSETS
     # How far its sides lie within the squares in which it was seen; None when they are not parallel to the grid
     insets: SubcellExtent | None = None
+
+    @property
+    def stuck(self) -> int:
+        """The number of the last motions in a row, none of which moved it."""
+        return len(self.resisted)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from utak.kb.localisation.known.state import TrackerState
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
-from utak.kb.objects.movability import MotionHistory, movabilities
+from utak.kb.objects.movability import MotionHistory, movabilities, square_ways
 from utak.kb.objects.persistence import Persistence, persistences
 from utak.kb.objects.proportions import corrected_shape
 from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
@@ -272,12 +272,25 @@ def _felt_objects(
     return [node for node in objects if node.colour in (None, colour) and about & node.patch.squares()]
 
 
-def with_movability(objects: Iterable[Node], rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
+def with_movability(objects: Iterable[Node], model: WorldModel, rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
     """Return the objects with what kb/asp/movable.lp and users' rules say of moving them."""
     nodes = tuple(objects)
-    tried = [MotionHistory(n.name, n.confidence, max(n.patch.mask.shape), n.moved, n.stuck) for n in nodes]
+    tried = [
+        MotionHistory(n.name, n.confidence, max(n.patch.mask.shape), n.moved, n.resisted, _room_on(n, model))
+        for n in nodes
+    ]
     found = movabilities(tried, rules, (fact for node in nodes for fact in appearance_facts(node)))
-    return tuple(replace(n, movable=found[n.name].percent, felt_first=found[n.name].felt_first) for n in nodes)
+    now = ((node, found[node.name]) for node in nodes)
+    return tuple(replace(n, movable=m.percent, felt_first=m.felt_first, untried=m.untried) for n, m in now)
+
+
+def _room_on(node: Node, model: WorldModel) -> tuple[str, ...]:
+    """Return the ways in which nothing known stands right beside an object; () for one that did not resist."""
+    if not node.resisted:
+        return ()
+    own, occupied = node.patch.squares(), model.view.state == OCCUPIED
+    beside = {way: {(x + dx, y + dy) for x, y in own} - own for way, (dx, dy) in square_ways(model.frame).items()}
+    return tuple(way for way, there in beside.items() if not occupied[model.squares(there)].any())
 
 
 def with_persistence(objects: Iterable[Node], memory: TrackerState, rules: tuple[Path, ...] = ()) -> tuple[Node, ...]:
@@ -346,7 +359,7 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
         moved=load.proven,
         whole=load.whole,
         turned=load.turned,
-        stuck=load.stuck,
+        resisted=load.resisted,
         dubious=load.dubious,
         inexact=load.inexact,
         astray=load.astray > COMMAND_ROUNDING,

@@ -8,13 +8,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from utak.geometry.counts.retina import RETINA_ZONES
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End
-from utak.geometry.manipulation.plan_carrying import Inside
-from utak.geometry.motion.se2 import Rotate, Translate
+from utak.geometry.manipulation.plan_carrying import At, Inside
+from utak.geometry.motion.se2 import Pose, Rotate, Translate
 from utak.geometry.raster.runs import mask_to_polygon
-from utak.kb.body import Grasp, Move, Release
+from utak.kb.body import Grasp, Move, Push, Release
+from utak.kb.mapping.patch import Patch
 from utak.kb.objects.held_object import is_grid_aligned
+from utak.kb.objects.movability import square_ways, way_of
 from utak.kb.perception.frame import CENTRE
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.advice import Act, Go, See, command_of, unplanned_act
@@ -47,6 +50,9 @@ MAX_CONTACTS, MAX_CONTACTS_INEXACT = 2, 4
 MAX_PLANS = 40  # plans in one task; a bound on time
 NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than rounding; a convention
 VIEWPOINT_TARGET = "sight"  # the end of a plan that brings an object near to where the robot wants to look
+# Squares by which an object is tried another way, if there is room: as wide as the widest field of the retina, so that
+# each field shows something else if it moved (derived).
+TOLD_DISTANCE = max(side for _, side in RETINA_ZONES)
 AWAY_TARGET = "away"  # the end of a plan that moves an object out of the way of another
 
 Advice = Act | Go | See | Infeasibility
@@ -86,6 +92,18 @@ class PlanExecutor:
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
         """Return what to do to carry an object to one of several ends, or why nothing can be done."""
+        # What did not move is first moved another way, where one is left that was not tried.
+        others = _ends_other_ways(node, ends, situation)
+        advice = self._advise(node, others, situation, dict, True) if others else Infeasibility(False)
+        if isinstance(advice, Infeasibility):
+            return self._advise(node, ends, situation, hoped)
+        why = f"{node.name} did not move, and may move another way"
+        return replace(advice, why=f"{why}: {advice.why}") if isinstance(advice, Act | Go) else advice
+
+    def _advise(
+        self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction, other_way: bool = False
+    ) -> Advice:
+        """Return the same; other_way: whether the ends are those another way, for which it may stay in hand."""
         before, self._plan = self._plan, None
         plan = None
         if before is not None and before.name != node.name and before.target in ends:
@@ -94,7 +112,7 @@ class PlanExecutor:
             plan = self._operations.revalidate(before, ends if before.name == node.name else None, situation)
         if plan is None:
             self.missed += before is not None and before.grasped and not before.ended
-            answer = self._answer_failure(before, situation.model)
+            answer = self._answer_failure(before, situation.model, other_way)
             if answer is not None:
                 return answer
         last = before.target if before is not None else ""
@@ -161,7 +179,7 @@ class PlanExecutor:
         # None when there is no such push (see `detour_push`), or when what is left of the plan is not one leg of pushes
         # with the object in hand.
         plan = self._plan
-        if not self.pull or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
+        if not self.pull or node.stuck or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
             return None
         if len(plan.legs) != 1 or not plan.grasped or self._pushed is None:
             return None
@@ -211,7 +229,7 @@ class PlanExecutor:
 
     # -- when a plan fails -----------------------------------------------------------------------
 
-    def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel) -> Advice | None:
+    def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel, other_way: bool) -> Advice | None:
         """Return what to do when a motion did not move the held object: draw it back once, then release it."""
         # An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
         # degree off, for it is pushed against it as well. Returns None when nothing failed, or when nothing is held:
@@ -227,6 +245,8 @@ class PlanExecutor:
         bound = MAX_CONTACTS_INEXACT if held.inexact else MAX_CONTACTS
         if held.stuck > 1 or self._contacts.get(held.name, 0) > bound:
             self.failed.record(held, model)
+        elif other_way:
+            return None
         elif held.moved and pushed is not None and self.pull:
             doubted = self._contacts[held.name] > 1 or not is_grid_aligned(held.polygon)
             retreat = retreat_push(held, pushed, model, doubted)
@@ -301,9 +321,11 @@ class PlanExecutor:
             return None
         room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
         end = pull_out_end(other, found.swept, situation) or Inside(mask_to_polygon(room & ~found.swept))
-        request = self._request(other, {AWAY_TARGET: end}, "", situation.model)
-        plan = self._oracle.find(request, situation)
-        return (other, plan) if isinstance(plan, ManipulationPlan) and plan.plan.legs and not plan.aside else None
+        for ends in (_ends_other_ways(other, {AWAY_TARGET: end}, situation), {AWAY_TARGET: end}):
+            plan = self._oracle.find(self._request(other, ends, "", situation.model), situation) if ends else None
+            if isinstance(plan, ManipulationPlan) and plan.plan.legs and not plan.aside:
+                return other, plan
+        return None
 
     # -- following a plan ------------------------------------------------------------------------
 
@@ -354,3 +376,25 @@ class PlanExecutor:
         self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
         why = f"{plan.name} is grasped, to be carried to its place ({plan.target})"
         return Act(Grasp(direction), why, steps=(grasp(plan.name, direction), *self._plan.steps(model)))
+
+
+def _ends_other_ways(node: Node, ends: Mapping[str, End], situation: Situation) -> dict[str, End]:
+    """Return the ends of an object in each of the ways in which it is tried next: a given one, or as far as is told."""
+    if not node.untried:
+        return {}
+    model, free = situation.model, situation.cost_maps.free(0) | situation.model.mask(node.patch)
+
+    def far(x: int, y: int) -> int:
+        """Return for how many steps of (x, y) the squares of the object are free, 1 to TOLD_DISTANCE."""
+        (west, south, mask), steps = node.patch, range(1, TOLD_DISTANCE + 1)
+        places = (Patch(west + n * x, south + n * y, mask) for n in steps)
+        return max(1, next((n for n, there in enumerate(places) if not free[model.mask(there)].all()), TOLD_DISTANCE))
+
+    found: dict[str, End] = {
+        way: At(Pose(float(far(x, y) * x), float(far(x, y) * y), 0.0))
+        for way, (x, y) in square_ways(model.frame).items()
+    }
+    for end in ends.values():
+        if isinstance(end, At) and not end.pose.degrees:
+            found[way_of(Push(*model.frame.to_utak(end.pose.x, end.pose.y)))] = end
+    return {way: end for way, end in found.items() if way in node.untried}

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from utak.geometry.manipulation.goals import End
 from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node
-from utak.planner.deciding.bringing import bring_to_end, carry_on
+from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import Passages, feel_rim, feel_walls, feeling_scope, walls_to_feel
 from utak.planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from utak.planner.deciding.stage_turn import StageTurn
@@ -45,19 +45,17 @@ class ObstacleClearer:
         """Return the next command for the obstacle that is being moved; nothing when it blocks no longer."""
         # Nothing, too, when its command would close a loop: then it is no longer being moved.
         node, held = turn.situation.model.object(self._moving), turn.situation.model.held
-        if node is not None and held is None:
-            instead = self._move_first(self._movable(turn.situation), turn, node.name)
-            if instead is not None:
-                return instead
-        carried = None
+        decided = None
         if node is not None and held == node.name:
             last = self._supposed
             again = None if last is None else suppose(node, last.side, last.depth, turn.situation)
-            carried = carry_on(node, turn, turn.situation if again is None else again.situation)
-        if carried is None:
+            decided = carry_on(node, turn if again is None else turn.within(again.situation))
+        if decided is None and node is not None and held in (None, node.name):
+            decided = self._move_first(self._movable(turn.situation), turn, node.name) or another_way(node, turn)
+        if decided is None:
             gone, self._moving = self._moving, ""
             return nothing_to_do(f"{gone} is no longer moved aside")
-        return carried
+        return decided
 
     def feel_on(self, turn: StageTurn) -> Decision:
         """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left."""
@@ -138,4 +136,4 @@ def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision | None:
     if rim is not None:
         return rim
     purpose = f"{node.name} blocks the robot's way: "
-    return bring_to_end(node, ASIDE_TARGET, aside, turn, purpose)
+    return bring_to_end(node, {ASIDE_TARGET: aside}, turn, purpose)

@@ -82,7 +82,7 @@ class ErrandRunner:
         """Return the next command of an errand; a verdict or nothing when it cannot be done."""
         goal = found.goal
         if goal is None:
-            brought = bring_to_end(found.node, found.errand.place, found.end, turn)
+            brought = bring_to_end(found.node, {found.errand.place: found.end}, turn)
             return brought or nothing_to_do(f"{found.node.name} cannot be brought to {found.errand.place}")
         if goal not in turn.stage.goals:
             turn = replace(turn, stage=replace(turn.stage, goals=(*turn.stage.goals, goal)))

@@ -5,24 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from utak.geometry.kernels.arrays import Floats
+from utak.kb.reasoning.encodings import encoding_facts
 from utak.kb.task.binding import Reconciliation
 from utak.kb.world.rooms import rooms_of
 from utak.planner.goals.robot_goals import Destination
 from utak.planner.navigation.fewest_moves import MOVE_COST, SQUARE_COST
-from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.navigation.subgoals import PLANNER_ASP, Subgoal
 from utak.planner.screen.moves import one_move_squares
 from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.sights import frontiers
+from utak.planner.sights.frontiers import Viewpoint
 from utak.planner.sights.viewpoints import MOST_LIKELY, TO_TAKE, Approach, inspection, sightings
 from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
 
-# All values below were tuned on random worlds (benchmarks.campaign).
-UNEXPLAINED_BONUS = -10.0  # squares: price of a look at a boundary that no straight wall explains
-UNEXPLAINED_CHANCE = 4  # percent that such a boundary hides what is missing
-LIKELY_WALL_CHANCE = 2  # percent that a boundary that is likely wall hides it
-PASSAGE_CHANCE = 20  # percent that floor seen beyond an unknown passage holds it
-DISTANT_LOOK_SHARE = 0.7  # of the promise of a look that ends right before an object, that of one from afar
+PRIORS_OF_LOOKS = PLANNER_ASP / "priors_of_looks.lp"
 
 
 def subgoals_towards(
@@ -43,7 +40,10 @@ def subgoals_towards(
     unseen = _unseen_share(situation, reconciled)
     likely = _object_heat(situation, reconciled, unseen)
     places = [] if likely is None else _likely_places(cost_maps, likely, to)
-    return [*subgoals, *things, *places, *_looks_at_the_unseen(cost_maps, unseen, to)]
+    for kind, look in looks_at_the_unseen(cost_maps, to):
+        chance = unseen * _chance_of_look(kind, frontiers.gain_of(cost_maps, look))
+        places.append(Subgoal(kind, look.squares, look.what, max(1, round(100 * chance))))
+    return [*subgoals, *things, *places]
 
 
 def contact_subgoals(situation: Situation) -> list[Subgoal]:
@@ -101,34 +101,29 @@ def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Su
     return [Subgoal(SubgoalKind.INSPECT, *look) for _, look in seen]
 
 
-def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
-    """Return looks at what was never seen, and at what bounds the floor."""
-    views = (
-        frontiers.best_views(cost_maps, one_move_squares(cost_maps, SubgoalKind.EXPLORE), MOVE_COST, SQUARE_COST)
-        if to.take
-        else []
-    )
-    promise = unseen * (DISTANT_LOOK_SHARE if to.take else 1.0)
+def looks_at_the_unseen(cost_maps: CostMaps, to: Approach) -> list[tuple[SubgoalKind, Viewpoint]]:
+    """Return looks at what was never seen (explore), at what bounds the floor (settle), and at floor beyond (pass)."""
+    reachable = one_move_squares(cost_maps, SubgoalKind.EXPLORE) if to.take else None
+    views = [] if reachable is None else frontiers.best_views(cost_maps, reachable, MOVE_COST, SQUARE_COST)
     for apart in (frontiers.VIEW_SPACING, 0):
-        borders = [*views, *frontiers.with_chances(cost_maps, frontiers.find_frontiers(cost_maps, apart))]
-        explored = [
-            Subgoal(SubgoalKind.EXPLORE, *look)._replace(chance=max(1, round(look.chance * promise)))
-            for look in borders
-        ]
-        odd, plain = (frontiers.unsettled_boundaries(cost_maps, apart, odd=odd) for odd in (True, False))
-        odd_chance, plain_chance = (
-            max(1, round(unseen * chance)) for chance in (UNEXPLAINED_CHANCE, LIKELY_WALL_CHANCE)
-        )
-        settled = [
-            Subgoal(SubgoalKind.SETTLE, *look, price=UNEXPLAINED_BONUS)._replace(chance=odd_chance) for look in odd
-        ]
-        settled += [Subgoal(SubgoalKind.SETTLE, *look)._replace(chance=plain_chance) for look in plain]
-        if explored or settled:
+        explore = [*views, *frontiers.find_frontiers(cost_maps, apart)]
+        settle = frontiers.unsettled_boundaries(cost_maps, apart)
+        if explore or settle:
             break
-    beyond = frontiers.unreached_rooms(cost_maps)
-    passage_chance = max(1, round(unseen * PASSAGE_CHANCE))
-    passages = [Subgoal(SubgoalKind.PASS, *look)._replace(chance=passage_chance) for look in beyond]
-    return [*explored, *settled, *passages]
+    kinds = {
+        SubgoalKind.EXPLORE: explore,
+        SubgoalKind.SETTLE: settle,
+        SubgoalKind.PASS: frontiers.unreached_rooms(cost_maps),
+    }
+    return [(kind, look) for kind, looks in kinds.items() for look in looks]
+
+
+def _chance_of_look(kind: SubgoalKind, gain: float) -> float:
+    """Return how often looks of a kind that show `gain` squares never seen showed what no look had shown, 0 to 1."""
+    counted = encoding_facts(PRIORS_OF_LOOKS, "counted_look", 4)
+    return next(
+        int(w) / 1000 for case, least, most, w in counted if case == kind and int(least) <= int(gain) <= int(most)
+    )
 
 
 def _object_heat(situation: Situation, reconciled: Reconciliation, unseen: float) -> Floats | None:

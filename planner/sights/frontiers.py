@@ -18,7 +18,6 @@ from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import Door
 from utak.planner.screen.projection import (
-    SURELY_OCCUPIED,
     CostMaps,
     SquareIndices,
     dilate,
@@ -70,11 +69,9 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     return [Viewpoint(squares, "there may be a gap in what bounds the floor") for squares in stretches]
 
 
-def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
+def unsettled_boundaries(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely."""
     open_ = cost_maps.unsettled & dilate(cost_maps.floor, 1)
-    if odd:
-        open_ &= cost_maps.model.view.probability < SURELY_OCCUPIED
     near = np.where(unlooked_floor(cost_maps, apart), _grown_labels(_stretches(open_), FOVEA_RANGE), 0)
     return [Viewpoint(squares, "what bounds the floor is not clear") for squares in group_by_label(near)]
 
@@ -166,8 +163,12 @@ def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewp
     """Return the viewpoints, in order, with the chance that a wanted object is seen from their nearest square."""
     if not viewpoints:
         return []
-    gain = cost_maps.information_gain.ravel()
-    return [view._replace(chance=_chance(float(gain[_nearest(cost_maps, view.squares)]))) for view in viewpoints]
+    return [view._replace(chance=_chance(gain_of(cost_maps, view))) for view in viewpoints]
+
+
+def gain_of(cost_maps: CostMaps, view: Viewpoint) -> float:
+    """Return the weighted number of squares never seen that come into sight from the nearest square of a viewpoint."""
+    return float(cost_maps.information_gain.ravel()[nearest_square(cost_maps, view.squares)])
 
 
 def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_cost: float) -> list[Viewpoint]:
@@ -179,9 +180,7 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
         return []
     far = cost_maps.distances[0].ravel()[candidates] / FIFTHS_PER_SQUARE
     value = gain / (move_cost + square_cost * far)
-    best = value >= EQUAL_VALUE_SHARE * value.max()
-    chance = _chance(float(gain[best][far[best].argmin()]))
-    return [Viewpoint(candidates[best], FRONTIER_REASON, chance)]
+    return [Viewpoint(candidates[value >= EQUAL_VALUE_SHARE * value.max()], FRONTIER_REASON)]
 
 
 def _chance(gain: float) -> int:
@@ -189,7 +188,7 @@ def _chance(gain: float) -> int:
     return max(1, min(90, round(100 * gain / SQUARES_PER_OBJECT)))
 
 
-def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
+def nearest_square(cost_maps: CostMaps, squares: SquareIndices) -> int:
     """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached."""
     reached = cost_maps.nearest(squares)
     if reached is None:

@@ -20,8 +20,9 @@ from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing, write
 
 # flush: the thing ends with the wall on both sides. recessed: it leaves a niche on one side or both. out: it sticks
-# out. two: two things fill the doorway, one behind the other. closed: a room without any door.
-PLUG_KINDS = ("flush", "recessed", "out", "two", "closed")
+# out. two: two things fill the doorway, one behind the other. half: the thing sticks out on one side and ends within
+# the doorway, where another thing may stand behind it. closed: a room without any door.
+PLUG_KINDS = ("flush", "recessed", "out", "two", "half", "closed")
 # Kinds whose doorway only a pull opens: the first thing reaches from jamb to jamb and stands against the second, so it
 # cannot be pushed on or aside, nor turned.
 PULL_KINDS = ("two",)
@@ -103,6 +104,10 @@ def _spans(rng: np.random.Generator, kind: str, wall: int) -> list[tuple[float, 
     if kind == "out":
         more = float(rng.integers(1, 4))
         return [(-more, float(wall))] if rng.random() < 0.5 else [(0.0, wall + more)]
+    if kind == "half":
+        more, middle = float(rng.integers(1, 4)), float(rng.integers(1, wall))
+        spans = [(-more, middle), (middle, float(wall))][: 1 + int(rng.integers(2))]
+        return spans if rng.random() < 0.5 else [(wall - last, wall - first) for first, last in spans]
     if kind == "two":
         middle = float(rng.integers(1, wall))
         return [(0.0, middle), (middle, float(wall))]

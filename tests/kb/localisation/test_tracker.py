@@ -257,7 +257,7 @@ def test_an_unchanged_impression_after_a_push_means_that_nothing_moved() -> None
     assert found.explanation.outcome is not None and found.explanation.outcome.stopped
     assert tracker.state.place == CENTRE
     assert tracker.state.held_objects["o1"].polygon.equals(translate(thing, -37, -20))
-    assert tracker.state.held_objects["o1"].stuck == 1
+    assert tracker.state.held_objects["o1"].resisted == ("east",)
 
 
 def test_a_turn_about_the_middle_of_the_square_leaves_the_origin_there() -> None:

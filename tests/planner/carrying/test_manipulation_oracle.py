@@ -63,7 +63,9 @@ def asked(
     model = replace(model, view=view)
     left, bottom = view.west + west, view.south + 5
     square = shapely.box(left, bottom, left + 4, bottom + 4)
-    node = replace(node, polygon=square, moved=turned != 0.0, turned=turned, dubious=dubious, stuck=stuck)
+    node = replace(
+        node, polygon=square, moved=turned != 0.0, turned=turned, dubious=dubious, resisted=("north",) * stuck
+    )
     return ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
 
 

@@ -102,7 +102,7 @@ def test_an_object_in_a_door_is_drawn_out_unless_it_was_moved() -> None:
 def test_an_object_in_a_door_that_did_not_move_is_drawn_out_first() -> None:
     situation = known(WITHIN)
     (node,) = situation.model.objects
-    stuck = situation_of(replace(situation.model, objects=(replace(node, stuck=1),)))
+    stuck = situation_of(replace(situation.model, objects=(replace(node, resisted=("north",)),)))
     assert [type(one.aside) for one in found_in(stuck)] == [At, Inside, At]
 
 

@@ -110,6 +110,7 @@ def test_a_room_is_felt_with_few_halts() -> None:
         ("recessed", "next", 1, False),
         ("out", "next", 0, False),
         ("two", "next", 0, True),
+        ("half", "next", 8013, True),
         ("flush", "carry_next", 0, True),
     ],
 )

@@ -9,9 +9,9 @@ import pytest
 import shapely
 
 from tests.kb.drawings import known_model
-from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with, turn_of
-from utak.geometry.manipulation.plan_carrying import CarryingPlan, Inside, Leg
-from utak.geometry.motion.se2 import Rotate, Translate
+from tests.planner.situations import BESIDE_A_THING, known_situation, situation_of, tools_with, turn_of
+from utak.geometry.manipulation.plan_carrying import At, CarryingPlan, Inside, Leg
+from utak.geometry.motion.se2 import Pose, Rotate, Translate
 from utak.kb.body import Command, Grasp, Move, Push, Release
 from utak.kb.language.reader import facts_from_text
 from utak.kb.mapping.occupancy import OPEN
@@ -281,18 +281,32 @@ def test_an_object_that_stands_against_something_is_first_drawn_back(
     pushed: Translate | None, moved: bool, stuck: int, pull: bool, drawn: tuple[float, float] | None
 ) -> None:
     model = beside(()).model
-    node = replace(model.objects[0], moved=moved, stuck=stuck)
+    node = replace(model.objects[0], moved=moved, resisted=("north",) * stuck)
     model = replace(model, objects=(node,), held=node.name)
     executor = PlanExecutor(pull)
     if pushed is not None:
         executor.depart(Act(Push(pushed.dx, pushed.dy), "so", pushed))
-    found = executor._answer_failure(None, model)
+    found = executor._answer_failure(None, model, False)
     assert isinstance(found, Act)
     if drawn is None:
         assert found.command == Release()
         return
     assert isinstance(found.command, Push)
     assert (found.command.east, found.command.north) == pytest.approx(drawn)
-    again = executor._answer_failure(None, model)
+    again = executor._answer_failure(None, model, False)
     assert isinstance(again, Act)
     assert again.command == Release()
+
+
+@pytest.mark.parametrize(
+    ("untried", "command"), [(("south", "east"), Push(0.0, -3.0)), (("east",), Push(4.0, 0.0)), ((), Release())]
+)
+def test_an_object_that_did_not_move_is_moved_another_way_with_the_same_grasp(
+    untried: tuple[str, ...], command: Command
+) -> None:
+    model = known_situation(["b" * 12, *["b..........b"] * 3, "b..ggU.....b", *["b..........b"] * 3, "b" * 12]).model
+    node = replace(model.objects[0], resisted=("north",), untried=untried)
+    situation = situation_of(replace(model, objects=(node,), held=node.name))
+    found = PlanExecutor().advise(node, {"there": At(Pose(0.0, 2.0, 0.0))}, situation)
+    assert isinstance(found, Act)
+    assert found.command == command

@@ -81,7 +81,7 @@ def test_the_orientation_of_the_frame_is_looked_at_before_an_object_is_turned_or
     looked = frozenset((x, 0) for x in range(looks))
     model = replace(known_model(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
-    subgoal = look_before_grasp(replace(node, stuck=stuck), turns, situation_of(model))
+    subgoal = look_before_grasp(replace(node, resisted=("north",) * stuck), turns, situation_of(model))
     assert (subgoal is not None) == first
     if subgoal is not None:
         assert "how the squares of the map lie" in subgoal.what

@@ -202,7 +202,7 @@ def test_frontiers_border_on_unseen_squares() -> None:
     assert np.array_equal(found, np.flatnonzero(cost_maps.floor & near))
     closed = CostMaps(known_model(HALL))
     assert frontiers.find_frontiers(closed, 0) == []
-    assert frontiers.unsettled_boundaries(closed, 0, odd=False) == []
+    assert frontiers.unsettled_boundaries(closed, 0) == []
     assert frontiers.unreached_rooms(closed) == []
 
 
@@ -277,16 +277,6 @@ def test_the_pivot_lies_within_the_object() -> None:
     (node,) = model.objects
     x, y = encircled_point(node)
     assert (int(np.floor(x)), int(np.floor(y))) in node.patch.squares()
-
-
-@pytest.mark.parametrize("seed", WALKS)
-def test_odd_boundaries_are_part_of_the_unsettled_ones(seed: int) -> None:
-    cost_maps = CostMaps(random_walk(seed))
-
-    def squares(odd: bool) -> set[int]:
-        return {int(s) for look in frontiers.unsettled_boundaries(cost_maps, 0, odd=odd) for s in look.squares}
-
-    assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(cost_maps.floor).tolist())
 
 
 @pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])

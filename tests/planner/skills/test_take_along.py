@@ -51,7 +51,7 @@ def holding(place: tuple[float, float] = (0.5, 0.5), stuck: int = 0) -> tuple[Si
     model = known_model(ROOM)
     (node,) = model.objects
     west, south = node.patch.west, node.patch.south
-    node = replace(node, polygon=shapely.box(west, south, west + 3, south + 2), colour="g", stuck=stuck)
+    node = replace(node, polygon=shapely.box(west, south, west + 3, south + 2), colour="g", resisted=("north",) * stuck)
     return situation_of(replace(model, objects=(node,), held=node.name, place=place), {"x": node.name}), node
 
 
@@ -210,7 +210,7 @@ def test_an_object_that_did_not_move_is_not_led_out_again() -> None:
     led = executor.lead_out(node, situation)
     assert led is not None
     assert isinstance(led.command, Push)
-    assert executor.lead_out(replace(node, stuck=1), situation) is None
+    assert executor.lead_out(replace(node, resisted=("north",) * 1), situation) is None
 
 
 def at_a_loss(situation: Situation) -> Decision:

@@ -65,18 +65,18 @@ def test_a_place_that_contradicts_the_observation_is_not_believed() -> None:
 def test_after_slips_an_object_never_lies_exactly_on_squares() -> None:
     exact = replace(load(shapely.box(0, -4, 4, 0)), inexact=False, slack=0.0)
     for thing in (exact, replace(exact, inexact=True)):
-        moved = object_after(thing, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
+        moved = object_after(thing, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0, "north")
         assert moved.polygon.bounds == (0, -2, 4, 2)
         assert moved.slack == (OUTLINE_TOLERANCE if thing.inexact else 0.0)
 
 
 def test_an_object_thwarted_again_for_no_reason_is_inexact() -> None:
     thing = replace(load(shapely.box(0, -4, 4, 0)), inexact=False, slack=0.0)
-    once = object_after(thing, None, 0)
-    assert (once.stuck, once.inexact) == (1, False)
-    assert object_after(once, None, 0).inexact
-    assert not object_after(once, None, 0, suspected=True).inexact
-    moved = object_after(once, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
-    assert object_after(moved, None, 0).inexact
-    unproven = object_after(object_after(replace(thing, proven=False), None, 0), None, 0)
-    assert (unproven.stuck, unproven.inexact) == (2, False)  # the hand may be empty
+    once = object_after(thing, None, 0, "north")
+    assert (once.resisted, once.inexact) == (("north",), False)
+    assert object_after(once, None, 0, "north").inexact
+    assert not object_after(once, None, 0, "north", suspected=True).inexact
+    moved = object_after(once, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0, "north")
+    assert object_after(moved, None, 0, "north").inexact
+    unproven = object_after(object_after(replace(thing, proven=False), None, 0, "north"), None, 0, "north")
+    assert (unproven.resisted, unproven.inexact) == (("north",) * 2, False)  # the hand may be empty
