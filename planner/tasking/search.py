@@ -89,7 +89,10 @@ class PlanSearch:
             number += 1
             UNDER_WAY.words = f"plan of at most {horizon} steps, proposal {number} of at most {MAX_PROPOSALS}"
             proposal = self._propose(horizon)
+            fulfils = self._problem.fulfils
             if proposal.unmet and best is None and self._offer(proposal.unmet):
+                if self._problem.fulfils == fulfils:  # one errand for each thing leaves none that moves something aside
+                    horizon = max(horizon, shortest + 1)
                 continue
             if proposal.unmet and best is None and horizon < most:
                 horizon += 1
