@@ -309,14 +309,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (TIME_ARGUMENT,) for name in ("time", "begins", "busy", "acts", "settling")},
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
-        ("any_way", 0): (),
-        ("beside_door", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
-        **{
-            (name, 3): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT, AMOUNT_ARGUMENT)
-            for name in ("doors_to", "fewest_doors")
-        },
-        **{(name, 3): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT) for name in ("next_door", "way")},
-        ("leads", 3): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
@@ -331,10 +323,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("left", 1): (STEP_ARGUMENT,),
         ("settled", 2): (SUBJECT_ARGUMENT, TIME_ARGUMENT),
         ("moved", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
-        **{
-            (name, 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT)
-            for name in ("robot_in", "room_before", "fetched", "put_down", "needed", "reached")
-        },
+        **{(name, 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT) for name in ("robot_in", "room_before", "needed", "reached")},
         ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
         ("asked", 1): (PLAN_DOOR_ARGUMENT,),
         ("closed", 1): (PLAN_DOOR_ARGUMENT,),
@@ -374,7 +363,6 @@ PLAN_FACTS = frozenset(
         "connects", "relief", "size", "begins", "done", "lay",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
-        "any_way", "beside_door", "doors_to", "fewest_doors", "next_door", "way", "leads", "fetched", "put_down",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
         "default_price", "acts", "waits", "holds", "left", "settling", "settled",
     ]
