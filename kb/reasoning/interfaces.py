@@ -309,6 +309,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (TIME_ARGUMENT,) for name in ("time", "begins", "busy", "acts", "settling")},
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
+        ("any_way", 0): (),
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
@@ -325,8 +326,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("moved", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
         **{(name, 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT) for name in ("robot_in", "room_before", "needed", "reached")},
         ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
-        ("asked", 1): (PLAN_DOOR_ARGUMENT,),
-        ("closed", 1): (PLAN_DOOR_ARGUMENT,),
+        **{(name, 1): (PLAN_DOOR_ARGUMENT,) for name in ("asked", "closed")},
     },
     "agenda": {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
@@ -360,7 +360,7 @@ ASKED_ENCODINGS = frozenset({"alternatives"})
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "relief", "size", "begins", "done", "lay",
+        "connects", "relief", "size", "begins", "done", "lay", "any_way",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
