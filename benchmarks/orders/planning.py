@@ -1,12 +1,12 @@
 """Task plans in worlds that are known: how near to the best, and how long they take.
 
     python -m benchmarks.orders.planning optimum [--count 30] [--seed S]
-    python -m benchmarks.orders.planning rooms [--count 12] [--seed S] [--rooms 6] [--things 6]
+    python -m benchmarks.orders.planning rooms [--count 12] [--seed S] [--rooms 6] [--things 6] [--goals 1,2,3]
 
 `optimum`: small random rooms with a niche and two or three things that must go to poses, some of which block others.
 The plan is compared with the cheapest sequence of errands that a search over all states finds which has the same places
 and asks the same geometry, but neither the encoding nor its refutations. `rooms`: rooms in two rows (six of them
-have seven doors) with a thing in some of them; plans for one, two and three goals, in milliseconds of the processor,
+have seven doors) with a thing in some of them; plans for some numbers of goals, in milliseconds of the processor,
 without the work of the first call of a kernel.
 """
 
@@ -29,8 +29,8 @@ from utak.planner.situation import Situation
 from utak.planner.tasking.search import MadePlan, make_plan
 
 ROOM_WIDTH, ROOM_HEIGHT = 11, 10  # squares of each of the six rooms (a convention)
-GOALS = (1, 2, 3)  # goals of the tasks in a house
-HOUSE_NAMES = "ghkmnp"  # of the things in a house
+HOUSE_NAMES = "ghkmnpqrst"  # of the things in a house
+GOALS, THINGS = (1, 2, 3), 6  # numbers of goals, and things in a house, where no others are asked for (a convention)
 DOOR_WIDTH = 5  # squares (a convention)
 MAX_ERRANDS = 5  # of the exhaustive search: beyond them no plan of these small worlds is cheaper
 Drawing = list[list[str]]
@@ -44,13 +44,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
     parser.add_argument("--rooms", type=int, choices=range(2, 13, 2), default=6, help="rooms (%(default)s)")
     parser.add_argument("--things", type=int, help="things, each in a room of its own (as many as rooms, at most 6)")
+    parser.add_argument("--goals", default=",".join(map(str, GOALS)), help="things with a goal (%(default)s)")
     given = parser.parse_args(arguments)
     if given.what == "optimum":
         return optimum(given.count or 30, given.seed)
-    things = min(given.rooms, len(HOUSE_NAMES)) if given.things is None else given.things
+    things = min(given.rooms, THINGS) if given.things is None else given.things
     if not 1 <= things <= min(given.rooms, len(HOUSE_NAMES)):
         parser.error(f"there are {things} things, and not 1 to {min(given.rooms, len(HOUSE_NAMES))}")
-    return rooms(given.count or 12, given.seed, given.rooms, things)
+    goals = [number for number in map(int, given.goals.split(",")) if number <= things]
+    return rooms(given.count or 12, given.seed, given.rooms, things, goals)
 
 
 def optimum(count: int, seed: int) -> int:
@@ -131,11 +133,11 @@ def small_world(rng: np.random.Generator) -> tuple[list[str], dict[str, End]]:
     return ["".join(row) for row in reversed(grid)], ends
 
 
-def rooms(count: int, seed: int, number_of_rooms: int = 6, things: int = 6) -> int:
-    """Print the processor's milliseconds of plans for one, two and three goals in a house; return 0."""
+def rooms(count: int, seed: int, number_of_rooms: int, things: int, numbers_of_goals: Sequence[int]) -> int:
+    """Print the processor's milliseconds of plans for some numbers of goals in a house; return 0."""
     print(f"{number_of_rooms} rooms, {things} things")
     print("goals  planned  median ms  95th ms  most ms  proposals  questions")
-    for goals in GOALS[:things]:
+    for goals in numbers_of_goals:
         times, proposals, questions, planned = [], [], [], 0
         for number in range(seed, seed + count):
             rows, ends = house(np.random.default_rng([number, goals, 6]), goals, number_of_rooms, things)
@@ -165,7 +167,7 @@ def house(
 ) -> tuple[list[str], dict[str, End]]:
     """Return rooms in two rows with doors between neighbours, some things, and poses in other rooms for some of them.
 
-    goals : things that have a pose. number_of_rooms : an even number. things : at most one a room, and at most 6.
+    goals : things that have a pose. number_of_rooms : an even number. things : at most one a room, and at most 10.
     """
     wide, high, columns = ROOM_WIDTH + 2, ROOM_HEIGHT + 2, number_of_rooms // 2
     grid: Drawing = [["b"] * (columns * wide + 2) for _ in range(2 * high + 2)]

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import clingo
 import numpy as np
 
-from benchmarks.orders.planning import GOALS, HOUSE_NAMES, house, small_world
+from benchmarks.orders.planning import GOALS, THINGS, house, small_world
 from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from utak.geometry.manipulation.goals import End
 from utak.kb.reasoning.encodings import encoding_text
@@ -93,7 +93,7 @@ def planned(count: int, seed: int) -> Iterator[Facts]:
     """Yield the facts of the last decision of each plan in the worlds of benchmarks.orders.planning."""
     for number in range(seed, seed + count):
         yield from _decisions(*small_world(np.random.default_rng([number, 5])))
-        for goals in (*GOALS, len(HOUSE_NAMES)):
+        for goals in (*GOALS, THINGS):
             yield from _decisions(*house(np.random.default_rng([number, goals, 6]), goals))
 
 

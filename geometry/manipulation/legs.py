@@ -7,6 +7,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -15,6 +16,7 @@ import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs
 from utak.geometry.manipulation.workspace import Workspace, widened_body
+from utak.geometry.motion.first_contact import ContactBody
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.geometry.raster.rasterize import MIN_COVERED_AREA, covered_areas
 from utak.geometry.state_lattice.footprints import PUSH_DIRECTIONS
@@ -151,14 +153,21 @@ class PushSegment:
 
     def _free_pushes(self, workspace: Workspace, here: Floats, there: Floats) -> Bools:
         """Return to which of the places `there` (n, 2) the robot can push straight from the place `here`: (n,) bool."""
-        utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
         vectors = there - here
-        free = workspace.far(
-            widened_body(self.shape, utak, self.margin).after(Translate(*(here - self.stops[0]))), vectors
-        )
+        free = workspace.far(self._widened.after(Translate(*(here - self.stops[0]))), vectors)
         if not self.pull:
-            free &= [may_push(self.shape, utak, dx, dy) for dx, dy in vectors.tolist()]
+            free &= [may_push(self.shape, self._utak, dx, dy) for dx, dy in vectors.tolist()]
         return free
+
+    @property
+    def _utak(self) -> XY:
+        """The place of the robot when the push begins."""
+        return float(self.stops[0, 0]), float(self.stops[0, 1])
+
+    @cached_property
+    def _widened(self) -> ContactBody:
+        """Body and robot as one, with their clearance, when the push begins."""
+        return widened_body(self.shape, self._utak, self.margin)
 
 
 def verified(workspace: Workspace, shape: Any, legs: Sequence[Leg]) -> Any:

@@ -25,15 +25,8 @@ class Workspace:
     """The squares on which a body and the robot may be; all else, and all outside the array, is wall."""
 
     def __init__(self, free: Bools, walls: Any = None) -> None:
-        rows, columns = free.shape
         self.free = free
-        self.outer = shapely.box(
-            -OUTER_WALL_THICKNESS, -OUTER_WALL_THICKNESS, columns + OUTER_WALL_THICKNESS, rows + OUTER_WALL_THICKNESS
-        )
-        whole = shapely.union_all(_free_rectangles(free)) if free.any() else shapely.Polygon()
-        self.floor_polygon = whole if walls is None else shapely.box(0, 0, columns, rows).difference(walls)
-        self.walls = list(shapely.get_parts(self.outer.difference(self.floor_polygon)))
-        self.obstacles = Obstacles(self.walls)
+        self._given = walls
         self._known: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, work: Callable[[], Remembered]) -> Remembered:
@@ -43,6 +36,29 @@ class Workspace:
         if len(self._known) > MAX_KEPT_RESULTS:
             del self._known[next(iter(self._known))]
         return found
+
+    # Many questions are answered by squares alone, so what follows is computed on first access.
+
+    @cached_property
+    def floor_polygon(self) -> Any:
+        """Return the floor, shapely geometry, squares, table frame."""
+        if self._given is not None:
+            return shapely.box(0, 0, *self.free.shape[::-1]).difference(self._given)
+        return shapely.union_all(_free_rectangles(self.free)) if self.free.any() else shapely.Polygon()
+
+    @cached_property
+    def walls(self) -> list[Any]:
+        """Return what is no floor, with a wall about the array: shapely Polygons, squares, table frame."""
+        rows, columns = self.free.shape
+        thick = OUTER_WALL_THICKNESS
+        return list(
+            shapely.get_parts(shapely.box(-thick, -thick, columns + thick, rows + thick).difference(self.floor_polygon))
+        )
+
+    @cached_property
+    def obstacles(self) -> Obstacles:
+        """Return the walls prepared for exact first contact."""
+        return Obstacles(self.walls)
 
     @cached_property
     def floor(self) -> ObstacleField:

@@ -310,6 +310,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (TIME_ARGUMENT,) for name in ("time", "begins", "busy", "acts", "settling")},
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
+        ("any_way", 0): (),
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
@@ -328,7 +329,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (PLAN_DOOR_ARGUMENT,) for name in ("asked", "closed")},
     },
     "steps": {
-        **{("begun", 0): (), ("holds", 1): (NODE_ARGUMENT,)},
+        ("begun", 0): (),
+        ("holds", 1): (NODE_ARGUMENT,),
         **dict.fromkeys([("offered", 2), ("step", 2)], (NUMBER_ARGUMENT, ROBOT_STEP_ARGUMENT)),
         ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
         ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
@@ -358,7 +360,7 @@ ASKED_ENCODINGS = frozenset({"alternatives"})
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "relief", "size", "begins", "done", "lay",
+        "connects", "relief", "size", "begins", "done", "lay", "any_way",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",

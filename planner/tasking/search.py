@@ -14,6 +14,7 @@ import numpy as np
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import End
 from utak.geometry.motion.se2 import Translate
+from utak.geometry.raster.rasterize import squares
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.reasoning.encodings import encoding_constant
 from utak.kb.reasoning.user_rules import rules_reach
@@ -89,7 +90,10 @@ class PlanSearch:
             number += 1
             UNDER_WAY.words = f"plan of at most {horizon} steps, proposal {number} of at most {MAX_PROPOSALS}"
             proposal = self._propose(horizon)
+            fulfils = self._problem.fulfils
             if proposal.unmet and best is None and self._offer(proposal.unmet):
+                if self._problem.fulfils == fulfils:  # one errand for each thing leaves none that moves something aside
+                    horizon = max(horizon, shortest + 1)
                 continue
             if proposal.unmet and best is None and horizon < most:
                 horizon += 1
@@ -231,13 +235,7 @@ class PlanSearch:
             stood = None if known.stood is None else state.last
             return replace(known, origin=ANYWHERE if stood is None else origin, stood=stood)
         others = frozenset(name for name in state.things if name != errand.subject)
-        alone = self._ask(state.without(others), errand, shut)
-        gone = others if alone.after is None else frozenset[str]()
-        if alone.plan is not None:
-            margin = self._oracle.floors.margin
-            outline = Translate(margin, margin).carry(state.things[errand.subject].outline)
-            self._offers.keep_clear(swept_squares(alone.plan, outline, self._offers.shape))
-            self._offers.keep_way(errand.subject, outline, alone.plan.polygon)
+        gone = others - self._blocking(state, errand, shut, others)
         for name in sorted(others - gone):
             if self._is_refuted(state.without(gone | {name}), errand, shut):
                 gone |= {name}
@@ -251,6 +249,26 @@ class PlanSearch:
         barred = sorted({door.name for actor in {ROBOT, errand.subject} for door in self._situation.shut(actor)})
         found += f", with what the task or a user's rule forbids shut: {' and '.join(barred)}" if barred else ""
         return RefutedStep(errand.subject, origin, errand.place, given, stood, tuple(sorted(shut)), found)
+
+    def _blocking(
+        self, state: TableState, errand: Errand, shut: frozenset[str], others: frozenset[str]
+    ) -> frozenset[str]:
+        """Return some of the things because of which geometry refuses an errand: those on the ways that it finds."""
+        margin, (rows, columns) = self._oracle.floors.margin, self._offers.shape
+        placed = {name: Translate(margin, margin).carry(lying.outline) for name, lying in state.things.items()}
+        blocking = frozenset[str]()
+        while (answer := self._ask(state.without(others - blocking), errand, shut)).after is not None:
+            if answer.plan is None:
+                return others
+            way = swept_squares(answer.plan, placed[errand.subject], self._offers.shape)
+            if not blocking:  # the way that it would take by itself
+                self._offers.keep_clear(way)
+                self._offers.keep_way(errand.subject, placed[errand.subject], answer.plan.polygon)
+            crossed = {name for name in others - blocking if (way & squares(placed[name], columns, rows)).any()}
+            if not crossed:  # it is the robot's walk that is blocked
+                return others
+            blocking |= crossed
+        return blocking
 
     def _depends_on_robot(self, state: TableState, errand: Errand, shut: frozenset[str]) -> bool:
         """Return whether a refuted errand could be done if the robot stood elsewhere."""
