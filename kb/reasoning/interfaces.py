@@ -280,7 +280,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     },
     "task": {
         ("horizon", 1): (AMOUNT_ARGUMENT,),
-        ("thing", 1): (NODE_ARGUMENT,),
         ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("goal", "missing", "unclear", "waits", "met", "unmet")},
@@ -316,9 +315,9 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
         ("occurs", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("brought", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
+        **dict.fromkeys([("thing", 1), ("holds", 1)], (NODE_ARGUMENT,)),
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
-        ("holds", 1): (NODE_ARGUMENT,),
         ("settles", 2): (STEP_ARGUMENT, SUBJECT_ARGUMENT),
         **{(name, 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT) for name in ("default_price", "price")},
         ("left", 1): (STEP_ARGUMENT,),
