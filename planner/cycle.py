@@ -17,10 +17,10 @@ from utak.kb.task.task import Task
 from utak.kb.tracing.decisions import SolverCall, record_applied_rules, record_decisions
 from utak.kb.world.facts import Places, belief
 from utak.planner.agenda.decider import Decider
-from utak.planner.deciding.stage_turn import ALL_OBJECTS
 from utak.planner.decision import Decision, StepReport, TaskVerdict, Verdict
 from utak.planner.journal import Journal
-from utak.planner.steps import RECOVERY, step_of_command
+from utak.planner.steps import step_of_command
+from utak.planner.tasking.task_plan import RECOVERY, TaskPlan
 
 
 @dataclass(frozen=True)
@@ -185,15 +185,10 @@ class Robot:
         plan, attempt, command = self.decider.plan, self.decider.attempt, self.decision.command
         if command is not None:
             steps = self.decision.steps or (step_of_command(command, self.model),)
-            facts = plan.facts if plan is not None and plan.errands else self._bare_step()
+            bare = TaskPlan((RECOVERY,)) if self._must_restart else self.decider.bare_plan
+            facts = plan.facts if plan is not None and plan.errands else bare.facts
             return (*facts, *(f"step({number},{step})" for number, step in enumerate(steps)))
         return attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
-
-    def _bare_step(self) -> tuple[str, ...]:
-        """Return as facts what the robot does while there is no task plan, and what does not hold yet by that."""
-        step = RECOVERY if self._must_restart else self.decider.step
-        subject = step.partition("(")[2].removesuffix(")")
-        return (f"plan(0,{step})", *[f"unmet({subject})"] * (subject != ALL_OBJECTS))
 
     def _test(self) -> None:
         """Set `verdict` and `finished` when the task is done or cannot be done, or after the last command (step 8)."""

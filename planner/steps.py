@@ -14,8 +14,6 @@ from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.world.model import WorldModel, hundredths
 from utak.planner.subgoal_kind import SubgoalKind
 
-RECOVERY = "recover(robot)"  # the step of a plan in which a robot that is lost puts down what it holds
-
 
 def step_of_command(command: Command, model: WorldModel) -> str:
     """Return the step of a command alone, for what is in hand."""

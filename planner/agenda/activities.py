@@ -25,15 +25,18 @@ from utak.planner.deciding.trials import Trials
 from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
 from utak.planner.goals.placement import meets_any_end, to_view_frame
 from utak.planner.goals.robot_goals import destination
+from utak.planner.oracles.problem import PlacedGoal
 from utak.planner.per_model import PerModel
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
 from utak.planner.step_rules import refusal
-from utak.planner.steps import RECOVERY, step_of_command
+from utak.planner.steps import step_of_command
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
+from utak.planner.tasking.setting import waiting_goal
+from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
 
 # As what steps of a plan activities without one of that name are done, where there is no task plan.
-_STEPS = {"go": f"pursue({ROBOT_ITSELF})", "look": f"confirm({ALL_OBJECTS})", "release": RECOVERY}
+_ERRANDS = {"go": Errand("pursue", ROBOT_ITSELF), "look": Errand("confirm", ALL_OBJECTS), "release": RECOVERY}
 
 
 class Activities:
@@ -65,8 +68,8 @@ class Activities:
             raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
-        self.step = ""  # as what step of a plan the newest command is given
-        self._begun: dict[str, str] = {}  # the steps that may be resumed, by their names
+        self.bare = TaskPlan(())  # the step as which the newest command is given, where there is no task plan
+        self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
         """Return the function that tells whether a goal for an object holds in a situation."""
@@ -95,7 +98,7 @@ class Activities:
             decision = _done_by_rules(decision, turn.situation)
             if decision.command is not None:
                 agenda.record()
-                self._note_step(found)
+                self._note_step(found, turn)
                 return decision
             agenda.note(found, decision)
             if decision.verdict not in (None, TaskVerdict.DONE):
@@ -104,14 +107,19 @@ class Activities:
         agenda.record()
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
 
-    def _note_step(self, activity: Activity) -> None:
+    def _note_step(self, activity: Activity, turn: StageTurn) -> None:
         """Note as what step of a plan an activity is done."""
         if activity.kind == "resume":
-            self.step = self._begun.get(activity.subject, f"{activity.subject}({ALL_OBJECTS})")
+            self.bare = self._begun.get(activity.subject) or TaskPlan((Errand(activity.subject, ALL_OBJECTS),))
             return
-        self.step = _STEPS.get(activity.kind, str(activity))
+        errand = _ERRANDS.get(activity.kind) or Errand(activity.kind, activity.subject)
+        goals = [waiting_goal(name, goal) for name, goal in turn.goals.items() if name == errand.subject]
+        if errand.subject == ROBOT_ITSELF and turn.stage.own:
+            own = " and ".join(map(str, turn.stage.own))
+            goals = [PlacedGoal(f"g{len(turn.goals) + 1}", own, ROBOT, False)]
+        self.bare = TaskPlan((errand,), tuple(goal.name for goal in goals), goals=tuple(goals))
         if activity.kind in self._resumed:
-            self._begun[activity.kind] = self.step
+            self._begun[activity.kind] = self.bare
 
     def _facts(self, turn: StageTurn) -> Iterator[str]:
         """Yield the facts of a stage for the agenda, without full stops."""

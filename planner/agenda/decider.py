@@ -77,9 +77,9 @@ class Decider:
         return self._intention.followed
 
     @property
-    def step(self) -> str:
-        """As what step of a plan the newest command is given, as kb/asp/belief.lp writes it."""
-        return self._activities.step
+    def bare_plan(self) -> TaskPlan:
+        """The step as which the newest command is given, where there is no task plan."""
+        return self._activities.bare
 
     @property
     def attempt(self) -> TaskPlan | None:

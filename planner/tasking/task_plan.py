@@ -47,6 +47,9 @@ class Errand:
         return f"arrive({self.place})" if self.action == "arrive" else f"{self.action}({self.subject},{self.place})"
 
 
+RECOVERY = Errand("recover", "robot")  # a robot that is lost puts down what it holds
+
+
 @dataclass(frozen=True)
 class RefutedStep:
     """A refuted step, with the least circumstances in which geometry refutes it."""

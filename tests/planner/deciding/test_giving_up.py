@@ -16,6 +16,7 @@ from utak.kb.world.rooms import rooms_of
 from utak.planner.agenda.decider import Decider
 from utak.planner.cycle import Options, Robot
 from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.tasking.task_plan import Errand, TaskPlan
 
 
 class Handed(DrawnBody):
@@ -38,7 +39,7 @@ class Undecided:
     corners: Mapping[str, Corner] = {}
     plan = attempt = None
     alternatives: tuple[str, ...] = ()
-    step = "pursue(robot)"
+    bare_plan = TaskPlan((Errand("pursue", "robot"),))
 
     def __init__(self) -> None:
         self.asked: list[bool] = []
