@@ -183,12 +183,13 @@ class Robot:
     def _planned_facts(self) -> tuple[str, ...]:
         """Return the task plan that is followed, as facts; or which goals none attains, and what was refuted."""
         plan, attempt, command = self.decider.plan, self.decider.attempt, self.decision.command
-        if command is not None:
-            steps = self.decision.steps or (step_of_command(command, self.model),)
-            bare = TaskPlan((RECOVERY,)) if self._must_restart else self.decider.bare_plan
-            facts = plan.facts if plan is not None and plan.errands else bare.facts
-            return (*facts, *(f"step({number},{step})" for number, step in enumerate(steps)))
-        return attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
+        failed = attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
+        if command is None:
+            return failed
+        steps = self.decision.steps or (step_of_command(command, self.model),)
+        bare = TaskPlan((RECOVERY,)) if self._must_restart else self.decider.bare_plan
+        facts = plan.facts if plan is not None and plan.errands else (*failed, *bare.facts)
+        return (*dict.fromkeys(facts), *(f"step({number},{step})" for number, step in enumerate(steps)))
 
     def _test(self) -> None:
         """Set `verdict` and `finished` when the task is done or cannot be done, or after the last command (step 8)."""

@@ -17,6 +17,8 @@ from utak.planner.subgoal_kind import SubgoalKind
 
 def step_of_command(command: Command, model: WorldModel) -> str:
     """Return the step of a command alone, for what is in hand."""
+    if model.held is None and not isinstance(command, Move | Grasp):  # an empty hand does nothing: the robot stays
+        return go_to(model.place, model)
     match command:
         case Move(east, north):
             x, y = model.frame.place_to_utak(*model.place)

@@ -43,7 +43,8 @@ def test_a_run_is_followed_step_by_step() -> None:
     step = run.step()
     assert step is not None
     assert step.number == 1
-    assert str(planned) == f"{step.action}: {step.why}"
+    assert str(planned).splitlines()[0] == f"{step.action}: {step.why}"
+    assert planned.task is not None and planned.task.robot[0].startswith("go(")
     assert run.impression == step.impression
     assert run.world == step.world
     kept = run.episode
