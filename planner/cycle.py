@@ -17,9 +17,9 @@ from utak.kb.task.task import Task
 from utak.kb.tracing.decisions import SolverCall, record_applied_rules, record_decisions
 from utak.kb.world.facts import Places, belief
 from utak.planner.agenda.decider import Decider
-from utak.planner.decision import Decision, StepReport, TaskVerdict, Verdict
+from utak.planner.decision import Decision, StepReport, TaskEnd, TaskVerdict
 from utak.planner.journal import Journal
-from utak.planner.steps import step_of_command
+from utak.planner.steps import steps_of
 from utak.planner.tasking.task_plan import RECOVERY, TaskPlan
 
 
@@ -59,7 +59,7 @@ class Robot:
         rules = tuple(Path(file) for file in self.options.kb_files)
         self.knowledge = Knowledge(rules)  # (1) the default world model
         self.decider = decider or Decider(task, self.options.paths, rules, self.options.pull)  # (6) the task
-        self.verdict = Verdict(False, TaskVerdict.LIMIT, "the robot has not been woken yet")
+        self.verdict = TaskEnd(False, TaskVerdict.LIMIT, "the robot has not been woken yet")
         self.finished = False
         self.decision: Decision  # set on waking
         self.steps = 0
@@ -186,7 +186,7 @@ class Robot:
         failed = attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
         if command is None:
             return failed
-        steps = self.decision.steps or (step_of_command(command, self.model),)
+        steps = steps_of(self.decision, self.model)
         bare = TaskPlan((RECOVERY,)) if self._must_restart else self.decider.bare_plan
         facts = plan.facts if plan is not None and plan.errands else (*failed, *bare.facts)
         return (*dict.fromkeys(facts), *(f"step({number},{step})" for number, step in enumerate(steps)))
@@ -196,14 +196,14 @@ class Robot:
         decision = self.decision
         if decision.command is None:
             assert decision.verdict is not None
-            self.verdict = Verdict(decision.verdict == TaskVerdict.DONE, decision.verdict, decision.why)
+            self.verdict = TaskEnd(decision.verdict == TaskVerdict.DONE, decision.verdict, decision.why)
             self.finished = True
         elif self.steps >= self.options.max_steps:
             if self.decider.is_done_without_wishes(self.model, self.knowledge.memory.track):
                 reason = f"all goals hold after {self.steps} commands, and wishes are left"
-                self.verdict, self.finished = Verdict(True, TaskVerdict.DONE, reason), True
+                self.verdict, self.finished = TaskEnd(True, TaskVerdict.DONE, reason), True
                 return
             blamed = f"; {self.decider.blamed}" if self.decider.blamed else ""
             reason = f"not done after {self.steps} commands; the next one would be: {decision.why}{blamed}"
-            self.verdict = Verdict(False, TaskVerdict.LIMIT, reason)
+            self.verdict = TaskEnd(False, TaskVerdict.LIMIT, reason)
             self.finished = True

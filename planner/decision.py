@@ -25,7 +25,7 @@ class StepReport(NamedTuple):
     why: str  # the reason of the command, in words
 
 
-class Verdict(NamedTuple):
+class TaskEnd(NamedTuple):
     """The end of the task, as the robot judges it."""
 
     believed: bool  # whether the robot believes that the task is done

@@ -12,6 +12,7 @@ from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.body import Command, Grasp, Move, Push, Turn
 from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.world.model import WorldModel, hundredths
+from utak.planner.decision import Decision
 from utak.planner.subgoal_kind import SubgoalKind
 
 
@@ -30,6 +31,11 @@ def step_of_command(command: Command, model: WorldModel) -> str:
         case Grasp(direction):
             raise ValueError(f"what is grasped to the {direction} is known to who decides it only")
     return release(str(model.held))
+
+
+def steps_of(decision: Decision, model: WorldModel) -> tuple[str, ...]:
+    """Return the steps with which a decision goes on, that of its command first; () where it has no command."""
+    return decision.steps or (() if decision.command is None else (step_of_command(decision.command, model),))
 
 
 def release(thing: str) -> str:

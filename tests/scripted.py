@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 from utak.kb.body import Body, Command
-from utak.planner.cycle import StepReport, Verdict
+from utak.planner.cycle import StepReport, TaskEnd
 
 
 class Scripted:
     """A robot that gives the commands of a list and then a verdict; with none it has its verdict once it is awake."""
 
-    def __init__(self, body: Body, commands: Sequence[Command], verdict: Verdict) -> None:
+    def __init__(self, body: Body, commands: Sequence[Command], verdict: TaskEnd) -> None:
         self._body, self._commands, self.verdict = body, list(commands), verdict
 
     def wake(self) -> StepReport:

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 from utak.kb.body import COMMANDS, Body, Command, Impression
 from utak.kb.task.task import Task
-from utak.planner.decision import Decision, StepReport, TaskVerdict
-from utak.planner.decision import Verdict as RobotVerdict
+from utak.planner.decision import Decision, StepReport, TaskEnd, TaskVerdict
 from utak.simulator.run.session import CannotAdoptError
 from utak.simulator.scenario.settings import Settings
 
@@ -109,10 +108,10 @@ class MindRobot:
         return isinstance(self._next, Verdict)
 
     @property
-    def verdict(self) -> RobotVerdict:
+    def verdict(self) -> TaskEnd:
         """The verdict at the end."""
         found = self._next if isinstance(self._next, Verdict) else Verdict("limit", "the run was not finished")
-        return RobotVerdict(found.kind == "done", TaskVerdict(found.kind), found.reason)
+        return TaskEnd(found.kind == "done", TaskVerdict(found.kind), found.reason)
 
     def adopt(self, task: Task, settings: Settings) -> StepReport:
         """Take another task and other options from the newest impression on, and return the report on it anew."""

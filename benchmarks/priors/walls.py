@@ -12,7 +12,7 @@ from utak.planner.screen.projection import CostMaps
 from utak.planner.sights.walls import DOORWAY_WIDTH, stretches_in_question, walls_in_question
 
 WIDTHS = ("doorway", "square")
-COUNTED_PLUGS = ("flush", "recessed", "out", "two", "closed")  # kinds of benchmarks.worlds.filled.doorplugs
+COUNTED_PLUGS = ("flush", "recessed", "out", "two", "closed")  # kinds with which the shipped counts were made
 
 
 class WallSeen(NamedTuple):

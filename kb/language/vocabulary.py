@@ -250,7 +250,8 @@ ROBOT_STEPS: Mapping[str, tuple[tuple[ArgumentType, ...], str]] = {
     "turn": ((OBJECT_ARGUMENT, LENGTH_ARGUMENT), "{} is turned by {} degrees"),
     "release": ((OBJECT_ARGUMENT,), "{} is released"),
 }
-ROBOT_STEP_ARGUMENT = fact_argument("a step of the robot", {name: types for name, (types, _) in ROBOT_STEPS.items()})
+ROBOT_STEP_FORMS: Vocabulary = {name: types for name, (types, _) in ROBOT_STEPS.items()}
+ROBOT_STEP_ARGUMENT = fact_argument("a step of the robot", ROBOT_STEP_FORMS)
 PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
 # The circumstances on which a refutation rests.
 CIRCUMSTANCES: Vocabulary = {

@@ -30,7 +30,7 @@ from utak.kb.language.vocabulary import (
     PLAN_PREDICATES,
     RESUMED_STEPS,
     ROBOT_STEP_ARGUMENT,
-    ROBOT_STEPS,
+    ROBOT_STEP_FORMS,
     SETTLING_STEPS,
     SHAPE_CLASSES,
     TASK_PARAMETER_ARGUMENT,
@@ -115,7 +115,7 @@ ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
 # By the name of an argument type of compound terms: these terms.
 COMPOUND_FORMS: Mapping[str, Forms] = {
     "step": PLAN_STEPS,
-    ROBOT_STEP_ARGUMENT.name: {name: types for name, (types, _) in ROBOT_STEPS.items()},
+    ROBOT_STEP_ARGUMENT.name: ROBOT_STEP_FORMS,
     "activity": ACTIVITIES,
     "fact": STATED_FACTS,
     "act": ACTS,

@@ -30,7 +30,7 @@ from utak.planner.per_model import PerModel
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
 from utak.planner.step_rules import refusal
-from utak.planner.steps import step_of_command
+from utak.planner.steps import steps_of
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
 from utak.planner.tasking.setting import waiting_goal
 from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
@@ -253,7 +253,7 @@ def _done_by_rules(decision: Decision, situation: Situation) -> Decision:
     """Return a decision; `limit` in place of a command of which the steps may not be done."""
     if decision.command is None:
         return decision
-    refused = refusal(decision.steps or (step_of_command(decision.command, situation.model),), situation)
+    refused = refusal(steps_of(decision, situation.model), situation)
     return Decision(None, f"{decision.why}; {refused}", TaskVerdict.LIMIT) if refused else decision
 
 

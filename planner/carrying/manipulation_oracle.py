@@ -37,7 +37,7 @@ from utak.planner.goals.placement import (
     to_view_frame,
 )
 from utak.planner.navigation.subgoals import PLANNER_ASP
-from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.screen.moves import is_at, orientation_is_uncertain
 from utak.planner.screen.projection import UNSEEN_LEVEL, dilate
 from utak.planner.situation import Situation
 from utak.planner.step_rules import are_ruled, refusal
@@ -49,7 +49,6 @@ TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of square
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
 MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
 MOTION_PARTS = (1, 2, 4)  # parts in which a motion is made where users' rules forbid it otherwise; a convention
-AT_PLACE = 1e-6  # squares within which the robot is where a plan begins: rounding only
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
 CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
 WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on random worlds (benchmarks.campaign)
@@ -161,10 +160,10 @@ class ManipulationOracle:
             if plan.status == "found":
                 found = _manipulation_plan(plan, shape, name, level, situation, request.node)
                 bolder = self._bolder(request, found, situation, hoped)
-                ruled = are_ruled(situation)
-                for parts in MOTION_PARTS if ruled else (1,):
+                why = ""
+                for parts in MOTION_PARTS:
                     in_parts = _moved_in_parts(bolder, parts)
-                    why = _refusal(in_parts, situation, request.node) if ruled else ""
+                    why = _refusal(in_parts, situation, request.node)
                     if not why:
                         return in_parts
                 forbidden.append(why)  # it may be grasped otherwise
@@ -271,10 +270,12 @@ def _moved_in_parts(found: ManipulationPlan, parts: int) -> ManipulationPlan:
 
 
 def _refusal(found: ManipulationPlan, situation: Situation, node: Node) -> str:
-    """Return why the steps of a plan may not be done, in words; "" where they may."""
+    """Return why users' rules forbid the steps of a plan, in words; "" where they do not."""
+    if not are_ruled(situation):
+        return ""
     model = situation.model
     legs = [shifted(leg, model.view.west, model.view.south) for leg in found.plan.legs]
-    grasped = model.held == node.name and math.dist(legs[0].place, model.place) < AT_PLACE
+    grasped = model.held == node.name and is_at(model, legs[0].place)
     first = () if model.held is None or grasped else (release(model.held),)
     return refusal((*first, *of_legs(node.name, legs, grasped, model)), situation)
 

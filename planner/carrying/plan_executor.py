@@ -34,9 +34,9 @@ from utak.planner.carrying.remaining_plan import (
     PlanOperations,
     RemainingPlan,
     grasp_direction,
-    is_at,
 )
 from utak.planner.goals.placement import pull_out_end
+from utak.planner.screen.moves import is_at
 from utak.planner.screen.projection import SquareIndices, square_index
 from utak.planner.situation import Situation
 from utak.planner.skills.failed_grasps import FailedGrasps, rotated_grasps

@@ -22,11 +22,11 @@ from utak.kb.mapping.patch import Patch
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
 from utak.planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
+from utak.planner.screen.moves import is_at
 from utak.planner.screen.projection import square_index
 from utak.planner.situation import Situation
 from utak.planner.steps import of_legs
 
-PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
 KEPT_LEVEL = 2  # certainty level of squares over which a plan is kept, though a surer one was asked for; a convention
 AREA_TOLERANCE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says: rounding of outlines
 MIN_PREFIX = 4.0  # squares that a push must lead to be begun before all of its way is seen; tuned on random worlds
@@ -154,11 +154,6 @@ class PlanOperations:
     start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = start_from_robot
     # Returns the part of a plan over squares known to be free, or None
     safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = safe_prefix
-
-
-def is_at(model: WorldModel, place: XY) -> bool:
-    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding."""
-    return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
 def grasp_direction(plan: RemainingPlan, model: WorldModel) -> str | None:

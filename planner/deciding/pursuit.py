@@ -37,7 +37,7 @@ from utak.planner.sights.frontiers import VIEW_SPACING
 from utak.planner.situation import Situation
 from utak.planner.stages import ORIGIN_GOALS, Stage
 from utak.planner.step_rules import are_ruled, refusal
-from utak.planner.steps import release, towards
+from utak.planner.steps import towards
 from utak.planner.subgoal_kind import SubgoalKind
 
 
@@ -96,8 +96,7 @@ class Pursuer:
             if taken is not None:
                 return taken
             if model.held is not None:
-                why = f"{model.held} is released, because the robot must walk; {stage}"
-                return Decision(Release(), why, steps=(release(model.held),))
+                return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
             _, within = _priced(subgoal, ways_by_price)
             ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps, telling)
             decision = self._walk(subgoal, stage, within, ways)

@@ -26,6 +26,7 @@ ORIENTATION_TOLERANCE = math.radians(5)  # radians up to which the map frame's o
 OFF_CENTRE_KINDS = (SubgoalKind.EXPLORE, SubgoalKind.INSPECT, SubgoalKind.SETTLE)  # may end off a square's centre
 EDGE_OFFSET = 0.4618  # squares from a centre to a place just inside the edge of the same square (convention)
 LEEWAY_TOLERANCE = 0.1  # squares by which the origin may still lie elsewhere before the robot tests it (tuned)
+PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
 COMMAND_DIGITS = 12  # decimals of a command
 UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no whole-degree turn leads to a grid line
 
@@ -156,6 +157,11 @@ def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
     ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
     return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - GRID_LINE_TOLERANCE).any())
+
+
+def is_at(model: WorldModel, place: XY) -> bool:
+    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding."""
+    return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
 def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Command | None:

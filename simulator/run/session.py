@@ -8,7 +8,7 @@ from typing import Protocol
 
 from utak.kb.body import Body, Command
 from utak.kb.task.task import Task
-from utak.planner.decision import StepReport, TaskVerdict, Verdict
+from utak.planner.decision import StepReport, TaskEnd, TaskVerdict
 from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
 from utak.simulator.episode.record import action_entry, disturbance_entries, header, motion_entry
 from utak.simulator.run.embodiment import Embodiment
@@ -35,7 +35,7 @@ class RobotProtocol(Protocol):
         """Whether the robot has a verdict."""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> TaskEnd:
         """The verdict at the end."""
 
 
@@ -133,7 +133,7 @@ class Session:
 
     def end(self, limit: TimeLimit | None = None, within: bool = False) -> Result:
         """Compare the verdict with the truth, write the result and return it."""
-        verdict: Verdict = self.robot.verdict if limit is None else self._verdict_of(limit, within)
+        verdict: TaskEnd = self.robot.verdict if limit is None else self._verdict_of(limit, within)
         expected = self.scenario.expectations or ()
         if not self._track:  # the robot did not wake in time
             self._track.append(Snapshot(0, self.table.utak, dict(self.table.polygons)))
@@ -172,12 +172,12 @@ class Session:
         """Return what raises TimeOver in a block; nothing does while the episode that is resumed is repeated."""
         return nullcontext() if limit is None or self._log.is_repeating else limit.cutting()
 
-    def _verdict_of(self, limit: TimeLimit, within: bool) -> Verdict:
+    def _verdict_of(self, limit: TimeLimit, within: bool) -> TaskEnd:
         """Return the verdict of a run that a limit of time ends; `within` a step or between two."""
         decision = None if within else getattr(self.robot, "decision", None)
         coming = "" if decision is None else f"; the next command would be: {decision.why}"
         coming = "; the time was over within a step, which does not count" if within else coming
-        return Verdict(
+        return TaskEnd(
             False, TaskVerdict.LIMIT, f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}"
         )
 

@@ -23,18 +23,18 @@ from tests.scripted import Scripted
 from utak.kb.body import Body, Command, Move
 from utak.kb.perception.frame import turned
 from utak.kb.task.task import Task
-from utak.planner.cycle import Verdict
+from utak.planner.cycle import TaskEnd
 from utak.simulator.scenario.settings import Settings
 from utak.simulator.sweep.executors.tasks import TaskOutcome, WorkerTask, carry_out
 
 
-def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:
+def maker(commands: list[Command], verdict: TaskEnd) -> Callable[[Body, Task, Settings], Scripted]:
     """Return a maker of such robots."""
     return lambda body, task, settings: Scripted(body, commands, verdict)
 
 
-DONE = Verdict(True, "done", "I am there")
-GIVES_UP = Verdict(False, "impossible", "there is no way")
+DONE = TaskEnd(True, "done", "I am there")
+GIVES_UP = TaskEnd(False, "impossible", "there is no way")
 HERE = Move(0.0, 0.0)
 
 

@@ -20,7 +20,7 @@ from benchmarks.worlds.odd.tasks import NO, YES
 from tests.scripted import Scripted
 from utak.kb.body import Body
 from utak.kb.task.task import Task
-from utak.planner.cycle import Verdict
+from utak.planner.cycle import TaskEnd
 from utak.simulator.scenario.settings import Settings
 
 LIMITS = Limits(search=5)
@@ -33,7 +33,7 @@ def claiming(tmp_path: Path) -> Callable[[Asked, str], ClaimRow]:
 
     def ran(asked: Asked, verdict: str) -> ClaimRow:
         def make(body: Body, told: Task, settings: Settings) -> Scripted:
-            return Scripted(body, [], Verdict(verdict == "done", verdict, "so it is"))
+            return Scripted(body, [], TaskEnd(verdict == "done", verdict, "so it is"))
 
         def runner(place: Path, limits: Limits) -> str:
             child.run(place, limits.noise, limits.noise_seed, limits.max_steps, make)

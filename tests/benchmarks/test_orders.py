@@ -31,7 +31,7 @@ from utak.geometry.manipulation.plan_carrying import plan_carrying
 from utak.geometry.motion.se2 import Rotate, Translate
 from utak.kb.body import Body, Command, Move
 from utak.kb.task.task import Task
-from utak.planner.cycle import Verdict
+from utak.planner.cycle import TaskEnd
 from utak.simulator.run.session import RobotMaker
 from utak.simulator.scenario.scenario import read_scenario
 from utak.simulator.scenario.settings import Settings
@@ -47,7 +47,7 @@ def obedient(commands: Sequence[Command], verdict: str) -> RobotMaker:
     """Return a maker of robots that give commands and then a verdict."""
 
     def make(body: Body, told: Task, settings: Settings) -> Scripted:
-        return Scripted(body, commands, Verdict(verdict == "done", verdict, "so it is"))
+        return Scripted(body, commands, TaskEnd(verdict == "done", verdict, "so it is"))
 
     return make
 
@@ -152,7 +152,7 @@ def test_a_sequence_whose_end_alone_is_so_is_not_achieved(tmp_path: Path) -> Non
 
 def test_a_run_that_takes_too_long_is_cut_off(tmp_path: Path) -> None:
     def make(body: Body, told: Task, settings: Settings) -> Scripted:
-        return Scripted(body, Endless(), Verdict(False, "limit", "no"))
+        return Scripted(body, Endless(), TaskEnd(False, "limit", "no"))
 
     row = run_order(PLUG, replace(BOUNDS, seconds=1), tmp_path, make)
     assert (row.verdict, row.achieved, row.faulty) == ("time", False, False)
@@ -169,7 +169,7 @@ def test_a_run_is_also_cut_off_when_the_first_alarm_rings_where_python_drops_exc
 
     def make(body: Body, told: Task, settings: Settings) -> Scripted:
         SlowToDelete()
-        return Scripted(body, Endless(), Verdict(False, "limit", "no"))
+        return Scripted(body, Endless(), TaskEnd(False, "limit", "no"))
 
     assert run_order(PLUG, replace(BOUNDS, seconds=1), tmp_path, make).verdict == "time"
 

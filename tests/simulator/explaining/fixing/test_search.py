@@ -13,7 +13,7 @@ import shapely
 from utak.kb.body import Body, Command, Grasp, Push
 from utak.kb.language.reader import facts_from_text
 from utak.kb.task.task import Task, task_from_texts
-from utak.planner.cycle import StepReport, Verdict
+from utak.planner.cycle import StepReport, TaskEnd
 from utak.simulator.episode.episode import Episode
 from utak.simulator.episode.record import fact_lines
 from utak.simulator.explaining.fixing.changes import (
@@ -62,8 +62,8 @@ class Machine:
         return not self._left or self._given >= self._allowed
 
     @property
-    def verdict(self) -> Verdict:
-        return Verdict(not self._left, "limit" if self._left else "done", "as it was built")
+    def verdict(self) -> TaskEnd:
+        return TaskEnd(not self._left, "limit" if self._left else "done", "as it was built")
 
 
 def corridor(*things: Thing, doors: tuple[tuple[float, float], ...] = ((3.75, 5.25),), posts: Any = ()) -> World:
