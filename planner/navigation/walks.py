@@ -5,7 +5,7 @@ the doors that they cross and the things that they border on; and the shortest w
 two path-finders of the paper, and whoever has found routes already, offer each route as one link.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,17 +15,20 @@ from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs, Square
 from utak.geometry.pathfinders.grid_astar import grid_path
 from utak.geometry.pathfinders.visibility_graph import visibility_path
-from utak.kb.reasoning.solver import solve
+from utak.kb.reasoning.encodings import BoundedAnswer
+from utak.kb.reasoning.solver import solve_within
+from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.model import WorldModel, hundredths
 from utak.kb.world.pathgraph import bordering
 from utak.kb.world.rooms import Door, count_crossings, went_through
-from utak.planner.navigation.network import Link, network
+from utak.planner.navigation.network import Link, links_within, network
 from utak.planner.navigation.subgoals import PLANNER_ASP
 from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.screen.sweeps import squares_along
 
 WALKS_ENCODING = PLANNER_ASP / "walks.lp"
 MAX_TIGHT_WAYS = 6  # shortest ways over links that are pulled tight before the choice: bounds its time; by trial
+MAX_WALK_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
 MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
@@ -116,8 +119,6 @@ def choose_walk(
     facts = [f"begins({walks.ends[0]})", f"ends({walks.ends[1]})"]
     facts += [f"not_through({door})" for door in sorted(rules.forbidden)]
     facts += [f"door_price({door},{hundredths(price)})" for door, price in sorted(rules.prices.items())]
-    for link in walks.links:
-        facts += _link_facts(link, model, doors)
     for number, (way, route) in enumerate(zip(walks.ways, walks.routes, strict=True)):
         columns, rows = np.array(route.squares).T
         risk = _risk(columns[1:], rows[1:], model)
@@ -126,10 +127,26 @@ def choose_walk(
         facts += [f"through({number},{door.name})" for door in doors if leads_through(route, door)]
         facts += [f"last({number})"] * (len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares))
     about = [_corners_in_robot_frame(route, model) for route in walks.routes]
-    answer = solve([WALKS_ENCODING, *rules.files], [*facts, *rules.world], about=about)
-    if answer is None:
+
+    def best_over(links: Iterable[Link]) -> BoundedAnswer:
+        """Return the best walk over some of the links."""
+        given = [*facts, *(fact for link in links for fact in _link_facts(link, model, doors)), *rules.world]
+        if rules.files:
+            given += _border_facts(walks.links, model)
+        return solve_within([WALKS_ENCODING, *rules.files], given, MAX_WALK_CONFLICTS, about)
+
+    links = walks.links
+    if not rules.files:  # then all prices are lengths, or come on top of them
+        known = [link for link in links if any(link.name in way for way in walks.ways)]
+        with record_decisions():
+            best = best_over(known)
+        if best.atoms is not None:  # what is longer cannot be better
+            within = links_within(links, walks.ends, best.cost_at(0) / 100)
+            links = tuple(link for link in links if link in known or link in within)
+    atoms = best_over(links).atoms
+    if atoms is None:
         return None
-    steps = {str(a.arguments[1]): (str(a.arguments[0]), str(a.arguments[2])) for a in answer if a.match("step", 3)}
+    steps = {str(a.arguments[1]): (str(a.arguments[0]), str(a.arguments[2])) for a in atoms if a.match("step", 3)}
     names, here = [], walks.ends[0]
     while here != walks.ends[1]:
         name, here = steps[here]
@@ -145,7 +162,14 @@ def _link_facts(link: Link, model: WorldModel, doors: Sequence[Door]) -> Iterato
     columns, rows = np.floor(link.points).astype(int).T
     yield f"risk({name},{_risk(columns[1:], rows[1:], model)})"
     yield from (f"crosses({name},{door.name})" for door in doors if count_crossings(link.points, door) % 2)
-    yield from (f"borders({name},{thing})" for thing in bordering(link.points, link.clearances, model))
+
+
+def _border_facts(links: Sequence[Link], model: WorldModel) -> Iterator[str]:
+    """Yield which things bound which links, for users' rules."""
+    squares = (np.concatenate([getattr(link, part) for link in links]) for part in ("points", "clearances"))
+    beside = np.split(bordering(*squares, model), np.cumsum([len(link.points) for link in links])[:-1])
+    for link, rows in zip(links, beside, strict=True):
+        yield from (f"borders({link.name},{model.objects[thing].name})" for thing in np.flatnonzero(rows.any(0)))
 
 
 def _risk(columns: Longs, rows: Longs, model: WorldModel) -> int:
