@@ -7,6 +7,8 @@ import numpy as np
 import shapely
 
 from utak.geometry.kernels.arrays import Bools
+from utak.geometry.motion.se2 import Translate
+from utak.geometry.raster.runs import mask_to_polygon
 from utak.geometry.shapes.fit import Fit, fit_shapes
 from utak.kb.mapping.occupancy import OCCUPIED, OPEN, MapView
 from utak.kb.mapping.patch import Patch
@@ -24,6 +26,14 @@ class ShapeMeasurement(NamedTuple):
     open: int  # How many squares of the patch are not settled
     full: int  # How many are settled as covered
     others: Mapping[str, Any] = {}  # The outlines of the other classes, from the south-west corner of the patch
+
+    def traced(self, patch: Patch) -> "ShapeMeasurement":
+        """Return the measurement with the outline of the squares of the patch, if they are connected by their sides."""
+        outline = mask_to_polygon(patch.mask)
+        if outline.geom_type != "Polygon":
+            return self
+        ring = shapely.Polygon(outline.exterior).simplify(0.0)
+        return self._replace(polygon=Translate(patch.west, patch.south).carry(ring))
 
 
 class ShapeMeasurer:

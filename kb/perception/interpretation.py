@@ -1,6 +1,6 @@
 """Interpretation: what each region is, and which shape an object has. Facts go in, answers of kb/asp come out."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -150,8 +150,8 @@ def surest_kind(kind: str) -> int:
 
 def classify_shapes(
     facts: Iterable[str], rules: tuple[Path, ...] = (), world: Iterable[str] = ()
-) -> Mapping[str, Mapping[str, int]]:
-    """Decide which shapes objects have."""
+) -> tuple[Mapping[str, Mapping[str, int]], Collection[str]]:
+    """Decide which shapes objects have; also return the names of those whose outline is that of their squares."""
     answer: dict[str, dict[str, int]] = {}
     given = list(facts)
     named = [fact for fact in world if signature_of(fact) in predicates_read(SHAPES.stem, rules)]
@@ -167,4 +167,4 @@ def classify_shapes(
             node, shape, confidence = (str(a) for a in atom.arguments)
             known = answer.setdefault(node, {})
             known[shape] = max(known.get(shape, 0), int(confidence))
-    return answer
+    return answer, {str(atom.arguments[0]) for atom in atoms if atom.match("traced", 1)}

@@ -150,7 +150,8 @@ def seen_objects(
     names = assign_names(patches)
     measured = {n: measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
     colours = (colour_facts(name, touches.colour_of(patch)) for name, patch in zip(names, patches, strict=True))
-    shapes = classify_shapes(shape_facts(measured), rules, (fact for facts in colours for fact in facts))
+    shapes, traced = classify_shapes(shape_facts(measured), rules, (fact for facts in colours for fact in facts))
+    measured |= {n: m.traced(p) for (n, m), p in zip(measured.items(), patches, strict=True) if n in traced}
     return tuple(
         _seen_node(name, region, window, patch, measured[name], shapes.get(name, {}), model.kinds, touches)
         for name, region, window, patch in sorted(
@@ -228,7 +229,7 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
     if load.shape:
         return load
     measured = measurer.measure_whole(patch_of_polygon(load.first))
-    shapes = classify_shapes(shape_facts({load.name: measured}), rules, colour_facts(load.name, load.colour))
+    shapes, _ = classify_shapes(shape_facts({load.name: measured}), rules, colour_facts(load.name, load.colour))
     return replace(load, shape=shapes.get(load.name, {}))
 
 
