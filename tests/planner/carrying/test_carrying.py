@@ -103,6 +103,21 @@ def test_a_square_is_carried_into_a_corner(tmp_path: Path, heading: int) -> None
     assert max(corners[heading]) <= 1.0 + 1e-6
 
 
+BROAD_T = "POLYGON ((8.2 6.2, 16.8 6.2, 16.8 10.8, 13.8 10.8, 13.8 13.8, 11.2 13.8, 11.2 10.8, 8.2 10.8, 8.2 6.2))"
+
+
+def test_what_is_of_no_class_of_shapes_is_carried_as_what_it_is(tmp_path: Path) -> None:
+    goal = 'pose(x, "POINT (6 -5)", 0).'
+    folder = scene(tmp_path, room(f'object(t, g, "{BROAD_T}").'), "object(x). colour(x, g).", goal)
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    assert len(done.commands) <= 8
+    (load,) = done.session.robot.knowledge.memory.held_objects.values()
+    true = done.session.table.polygons["t"]
+    assert true.area < on_table(done.session, load.polygon).area < 1.3 * true.area
+    assert on_table(done.session, load.polygon).buffer(0.01).contains(true)
+
+
 @pytest.mark.long
 def test_an_immovable_object_is_found_out(tmp_path: Path) -> None:
     folder = scene(
