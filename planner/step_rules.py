@@ -29,5 +29,13 @@ def refusal(steps: Sequence[str], situation: Situation) -> str:
     blamed = rules_to_blame(STEPS_ENCODING, files, facts, lambda atoms: not atoms) if files else ()
     if not blamed:
         return f"{', '.join(steps)} cannot be done one after the other"
-    rules = f"the rule at {blamed[0]} forbids" if len(blamed) == 1 else f"the rules at {' and '.join(blamed)} forbid"
-    return f"{rules} {', '.join(steps)}"
+    return forbidden_by(blamed, ", ".join(steps))
+
+
+def forbidden_by(rules: Sequence[str], what: str) -> str:
+    """Return in words that users' rules, such as `rules.lp:3`, forbid something."""
+    return (
+        f"the rule at {rules[0]} forbids {what}"
+        if len(rules) == 1
+        else f"the rules at {' and '.join(rules)} forbid {what}"
+    )

@@ -24,11 +24,13 @@ from utak.planner.navigation.sticky_route import StickyRoute, to_map_squares
 from utak.planner.navigation.subgoals import Subgoal, choose
 from utak.planner.navigation.walks import (
     WALKS_ENCODING,
+    NoWalk,
     PlannedRoute,
     WalkRules,
     Walks,
     choose_walk,
     find_walks,
+    nearest_square,
     walks_along,
 )
 from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, next_move
@@ -36,7 +38,7 @@ from utak.planner.screen.projection import SquareIndices
 from utak.planner.sights.frontiers import VIEW_SPACING
 from utak.planner.situation import Situation
 from utak.planner.stages import ORIGIN_GOALS, Stage
-from utak.planner.step_rules import are_ruled, refusal
+from utak.planner.step_rules import are_ruled, forbidden_by, refusal
 from utak.planner.steps import towards
 from utak.planner.subgoal_kind import SubgoalKind
 
@@ -100,6 +102,9 @@ class Pursuer:
             _, within = _priced(subgoal, ways_by_price)
             ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps, telling)
             decision = self._walk(subgoal, stage, within, ways)
+            if isinstance(decision, RefusedEnd):
+                refused.append(decision)
+                continue
             if ruled and (why := refusal(decision.steps, situation)):
                 refused.append(RefusedEnd(subgoal.what, self._kept.path(model)[-1], why))
                 continue
@@ -117,16 +122,21 @@ class Pursuer:
             return felt[0] if self._feeling else decision or ask()
         return decision
 
-    def _walk(self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
-        """Return the next command towards a subgoal, and remember the route."""
+    def _walk(
+        self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None
+    ) -> Decision | RefusedEnd:
+        """Return the next command towards a subgoal, and remember the route; or how users' rules forbid every way."""
         model, cost_maps = situation.model, situation.cost_maps
         reached = cost_maps.nearest(subgoal.squares)
         assert reached is not None
         straight = None if fewest is None or self._is_ruled(situation) else fewest.way(subgoal)
-        route = None if straight is None else self.choose_route([straight], situation)
-        route = route or self._route_left(subgoal, reached.level, situation)
-        route = route or self._choose(find_walks(cost_maps, reached.level, subgoal.squares, self._paths), situation)
-        if route is None:
+        walked = None if straight is None else self.choose_route([straight], situation)
+        walked = walked or self._route_left(subgoal, reached.level, situation)
+        route = walked or self._choose(find_walks(cost_maps, reached.level, subgoal.squares, self._paths), situation)
+        if isinstance(route, NoWalk) and route.rules:
+            there = nearest_square(cost_maps, reached.level, subgoal.squares)
+            return RefusedEnd(subgoal.what, there, forbidden_by(route.rules, "every way there"))
+        if isinstance(route, NoWalk):
             why = f"{stage} cannot be attained: every route there leads through a forbidden door"
             return impossible(why, "every route there leads through a forbidden door")
         self.keep_route(route, model, subgoal.squares)
@@ -149,16 +159,19 @@ class Pursuer:
         self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
     def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
-        """Return which of some routes planner/asp/walks.lp chooses; None when all lead through forbidden doors."""
-        return self._choose(walks_along(offered), situation) if offered else None
+        """Return which of some routes planner/asp/walks.lp chooses; None when all are forbidden."""
+        route = self._choose(walks_along(offered), situation) if offered else None
+        return None if isinstance(route, NoWalk) else route
 
-    def _choose(self, walks: Walks, situation: Situation) -> PlannedRoute | None:
-        """Return the walk that planner/asp/walks.lp chooses; None when every way is forbidden."""
+    def _choose(self, walks: Walks, situation: Situation) -> PlannedRoute | NoWalk:
+        """Return the walk that planner/asp/walks.lp chooses."""
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.shut(ROBOT))
         prices = {name: MOVE_COST * commands for name, commands in situation.door_prices.items()}
-        files = situation.rules if self._is_ruled(situation) else ()
-        rules = WalkRules(forbidden, prices, files, situation.facts_for_rules(WALKS_ENCODING.stem) if files else ())
+        rules = WalkRules(forbidden, prices)
+        if self._is_ruled(situation):
+            world = situation.facts_for_rules(WALKS_ENCODING.stem)
+            rules = WalkRules(forbidden, prices, situation.rules, world, situation.track, situation.rooms)
         return choose_walk(walks, situation.cost_maps, before, situation.doors, rules)
 
     def _is_ruled(self, situation: Situation) -> bool:

@@ -1,12 +1,12 @@
 """The pathgraph between two squares: its links as facts know them, and the shortest ways over them.
 
-A link is a chain of the pathgraph, or the part of one between the places where start and goal meet the skeleton. Links
-on no walk from one to the other are left out: who takes one comes back to the junction that it begins at.
+A link is a chain of the pathgraph, or the part of one between the places where start and goal meet the skeleton. Dead
+ends that lead to neither are left out: who walks into one comes back to the junction that it begins at.
 """
 
 import heapq
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise, permutations
 from typing import NamedTuple
@@ -92,7 +92,7 @@ def network(screen: Screen, start: Square, goal: Square) -> Network:
     for edge, (first, last) in enumerate(graph.edges.tolist()):
         size = int(graph.offsets[edge + 1] - graph.offsets[edge])
         cuts[edge] = {0: f"j{first + 1}", size - 1: f"j{last + 1}"}
-    ends, tails = list[str](), []
+    ends, tails = [], []
     for name, square in (("here", start), ("there", goal)):
         tail = shortest_squares(free.__contains__, square, bones.__contains__)
         column, row = tail[-1]
@@ -105,8 +105,7 @@ def network(screen: Screen, start: Square, goal: Square) -> Network:
         edge = int(graph.offsets.searchsorted(place, side="right")) - 1
         ends.append(cuts[edge].setdefault(place - int(graph.offsets[edge]), name))
     links = [link for edge, places in cuts.items() for link in _pieces(edge, places, graph.points_of(edge), screen)]
-    begin, end = ends
-    return Network(screen, tuple(_between(links, (begin, end))), (begin, end), (tails[0], tails[1]))
+    return Network(screen, tuple(_between(links, ends)), (ends[0], ends[1]), (tails[0], tails[1]))
 
 
 def _squares(mask: Bools) -> set[Square]:
@@ -124,15 +123,15 @@ def _pieces(edge: int, places: dict[int, str], points: Floats, screen: Screen) -
         yield Link(name, (places[begin], places[end]), part, screen.clearance[rows, columns])
 
 
-def _between(links: Sequence[Link], ends: tuple[str, str]) -> list[Link]:
-    """Return the links over which some walk leads that passes no junction twice."""
-    import networkx  # imported only when needed: it takes time
-
-    graph = networkx.Graph([link.ends for link in links])
-    graph.add_edge(*ends)  # so that a walk and this edge are a circle
-    circles = (part for part in networkx.biconnected_component_edges(graph) if {*ends} in map(set, part))
-    on_walks = {frozenset(edge) for part in circles for edge in part if edge[0] != edge[1]}
-    return [link for link in links if frozenset(link.ends) in on_walks]
+def _between(links: Sequence[Link], ends: Sequence[str]) -> list[Link]:
+    """Return links without loops and without dead ends that lead to neither end."""
+    left = [link for link in links if link.ends[0] != link.ends[1]]
+    while True:
+        degree = Counter(end for link in left for end in link.ends)
+        kept = [link for link in left if all(degree[end] > 1 or end in ends for end in link.ends)]
+        if len(kept) == len(left):
+            return left
+        left = kept
 
 
 def links_within(links: Sequence[Link], ends: tuple[str, str], most: float) -> list[Link]:

@@ -10,17 +10,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 
 from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs, Square
 from utak.geometry.pathfinders.grid_astar import grid_path
 from utak.geometry.pathfinders.visibility_graph import visibility_path
-from utak.kb.reasoning.encodings import BoundedAnswer
 from utak.kb.reasoning.solver import solve_within
+from utak.kb.reasoning.user_rules import rules_to_blame
 from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.model import WorldModel, hundredths
 from utak.kb.world.pathgraph import bordering
-from utak.kb.world.rooms import Door, count_crossings, went_through
+from utak.kb.world.rooms import Door, Rooms, count_crossings, went_through
 from utak.planner.navigation.network import Link, links_within, network
 from utak.planner.navigation.subgoals import PLANNER_ASP
 from utak.planner.screen.projection import CostMaps, SquareIndices
@@ -29,6 +30,7 @@ from utak.planner.screen.sweeps import squares_along
 WALKS_ENCODING = PLANNER_ASP / "walks.lp"
 MAX_TIGHT_WAYS = 6  # shortest ways over links that are pulled tight before the choice: bounds its time; by trial
 MAX_WALK_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
+TRODDEN = 1.5  # squares: what is nearer than that to where the robot has been counts as walked before; a convention
 MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
@@ -54,6 +56,12 @@ class Walks(NamedTuple):
     tighten: Callable[[Sequence[str]], PlannedRoute]  # pulls any other way over the links tight
 
 
+class NoWalk(NamedTuple):
+    """Every way is forbidden."""
+
+    rules: tuple[str, ...] = ()  # the rules of users because of which, as `rules.lp:3`; () where doors are why
+
+
 class WalkRules(NamedTuple):
     """Doors that are forbidden or dear, and the users' rules about links."""
 
@@ -61,11 +69,13 @@ class WalkRules(NamedTuple):
     prices: Mapping[str, float] = {}  # squares of way that a pass through a door costs besides, by its name
     files: tuple[Path, ...] = ()  # the users' rule files that reach walks.lp
     world: tuple[str, ...] = ()  # the facts of the world model that they name
+    track: tuple[XY, ...] = ()  # where the robot has been, map frame, in squares
+    rooms: Rooms | None = None  # the rooms of the floor
 
 
 def single_route(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> PlannedRoute:
     """Return the route to the nearest reachable square of `goals` by a path-finder that finds one: visibility, grid."""
-    free, goal = cost_maps.free(level), _nearest(cost_maps, level, goals)
+    free, goal = cost_maps.free(level), nearest_square(cost_maps, level, goals)
     if goal == cost_maps.here:
         return PlannedRoute((goal,), 0.0, 0.0, level)
     points = SINGLE_PATH_FINDERS[finder](free, _centre(cost_maps.here), _centre(goal))
@@ -86,7 +96,7 @@ SINGLE_PATH_FINDERS: Mapping[str, Callable[[Bools, XY, XY], Floats | None]] = {
 
 def find_walks(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> Walks:
     """Return the links and ways to the nearest reachable square of `goals`, at a certainty level."""
-    goal = _nearest(cost_maps, level, goals)
+    goal = nearest_square(cost_maps, level, goals)
     if finder in SINGLE_PATH_FINDERS or goal == cost_maps.here:
         return walks_along([single_route(cost_maps, level, goals, finder)])
     free = cost_maps.free(level)
@@ -113,8 +123,8 @@ def walks_along(routes: Sequence[PlannedRoute]) -> Walks:
 
 def choose_walk(
     walks: Walks, cost_maps: CostMaps, before: frozenset[Square], doors: Sequence[Door], rules: WalkRules
-) -> PlannedRoute | None:
-    """Choose a walk, by planner/asp/walks.lp; None when every way leads through a forbidden door."""
+) -> PlannedRoute | NoWalk:
+    """Choose a walk, by planner/asp/walks.lp."""
     model = cost_maps.model
     facts = [f"begins({walks.ends[0]})", f"ends({walks.ends[1]})"]
     facts += [f"not_through({door})" for door in sorted(rules.forbidden)]
@@ -128,24 +138,25 @@ def choose_walk(
         facts += [f"last({number})"] * (len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares))
     about = [_corners_in_robot_frame(route, model) for route in walks.routes]
 
-    def best_over(links: Iterable[Link]) -> BoundedAnswer:
-        """Return the best walk over some of the links."""
-        given = [*facts, *(fact for link in links for fact in _link_facts(link, model, doors)), *rules.world]
-        if rules.files:
-            given += _border_facts(walks.links, model)
-        return solve_within([WALKS_ENCODING, *rules.files], given, MAX_WALK_CONFLICTS, about)
+    if rules.files:
+        facts += [*_facts_for_rules(walks.links, model, rules), *rules.world]
+
+    def facts_over(links: Iterable[Link]) -> list[str]:
+        """Return the facts of a choice among some of the links."""
+        return [*facts, *(fact for link in links for fact in _link_facts(link, model, doors))]
 
     links = walks.links
     if not rules.files:  # then all prices are lengths, or come on top of them
         known = [link for link in links if any(link.name in way for way in walks.ways)]
         with record_decisions():
-            best = best_over(known)
+            best = solve_within([WALKS_ENCODING], facts_over(known), MAX_WALK_CONFLICTS, about)
         if best.atoms is not None:  # what is longer cannot be better
             within = links_within(links, walks.ends, best.cost_at(0) / 100)
             links = tuple(link for link in links if link in known or link in within)
-    atoms = best_over(links).atoms
+    given = facts_over(links)
+    atoms = solve_within([WALKS_ENCODING, *rules.files], given, MAX_WALK_CONFLICTS, about).atoms
     if atoms is None:
-        return None
+        return NoWalk(rules_to_blame(WALKS_ENCODING, rules.files, given, lambda _: False) if rules.files else ())
     steps = {str(a.arguments[1]): (str(a.arguments[0]), str(a.arguments[2])) for a in atoms if a.match("step", 3)}
     names, here = [], walks.ends[0]
     while here != walks.ends[1]:
@@ -164,12 +175,22 @@ def _link_facts(link: Link, model: WorldModel, doors: Sequence[Door]) -> Iterato
     yield from (f"crosses({name},{door.name})" for door in doors if count_crossings(link.points, door) % 2)
 
 
-def _border_facts(links: Sequence[Link], model: WorldModel) -> Iterator[str]:
-    """Yield which things bound which links, for users' rules."""
-    squares = (np.concatenate([getattr(link, part) for link in links]) for part in ("points", "clearances"))
-    beside = np.split(bordering(*squares, model), np.cumsum([len(link.points) for link in links])[:-1])
-    for link, rows in zip(links, beside, strict=True):
-        yield from (f"borders({link.name},{model.objects[thing].name})" for thing in np.flatnonzero(rows.any(0)))
+def _facts_for_rules(links: Sequence[Link], model: WorldModel, rules: WalkRules) -> Iterator[str]:
+    """Yield what users' rules alone ask of links: where they lead, what bounds them, where the robot has been."""
+    points, clearances = (np.concatenate([getattr(link, part) for link in links]) for part in ("points", "clearances"))
+    columns, rows = np.floor(points).astype(int).T
+    rooms = np.zeros(len(points), np.int64) if rules.rooms is None else rules.rooms.labels[rows, columns]
+    been = shapely.MultiPoint(np.array(rules.track or [model.place]) - (model.view.west, model.view.south))
+    path = been if len(been.geoms) == 1 else shapely.LineString(been.geoms)
+    trodden = shapely.distance(shapely.points(points), path) < TRODDEN
+    ends = np.cumsum([len(link.points) for link in links])[:-1]
+    parts = (np.split(values, ends) for values in (bordering(points, clearances, model), rooms, trodden))
+    for link, beside, within, passed in zip(links, *parts, strict=True):
+        yield from (f"borders({link.name},{model.objects[thing].name})" for thing in np.flatnonzero(beside.any(0)))
+        yield from (f"in_room({link.name},r{room})" for room in np.unique(within[within > 0]))
+        yield f"trodden({link.name},{round(100 * float(passed.mean()))})"
+        east, north = model.place_to_utak(*link.points[len(link.points) // 2])
+        yield f"middle({link.name},{hundredths(east)},{hundredths(north)})"
 
 
 def _risk(columns: Longs, rows: Longs, model: WorldModel) -> int:
@@ -177,7 +198,7 @@ def _risk(columns: Longs, rows: Longs, model: WorldModel) -> int:
     return round(100 * float(model.view.probability[rows, columns].sum()))
 
 
-def _nearest(cost_maps: CostMaps, level: int, goals: SquareIndices) -> Square:
+def nearest_square(cost_maps: CostMaps, level: int, goals: SquareIndices) -> Square:
     """Return the square of `goals`, (column, row), to which the shortest way leads at a level."""
     distances = cost_maps.distances[level].ravel()
     reached = goals[distances[goals] >= 0]

@@ -1,5 +1,6 @@
 """Walks over links of the pathgraph: against geometry's own shortest routes, and with rules of users in whole runs."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -16,17 +17,42 @@ from utak.planner.navigation.walks import WalkRules, choose_walk, find_walks
 from utak.planner.screen.projection import CostMaps
 
 ROOT = Path(__file__).resolve().parents[3]
+RULES = ROOT / "docs" / "walk_rules"
 FLOORS = arrays(
     np.bool_, st.tuples(st.integers(2, 14), st.integers(2, 14)), elements=st.sampled_from([True] * 4 + [False])
 )
-AROUND = utak.Scenario.from_text(
-    world="""table(36, 24).
-verge("POLYGON ((0 0, 0 24, 36 24, 36 0, 0 0), (2 2, 34 2, 34 22, 2 22, 2 2))").
-object(a, c, "POLYGON ((14 12, 19 12, 19 19, 14 19, 14 12))").
-utak("POINT (6.5 19.5)", 0).""",
-    start="",
-    goal="first(at(utak, corner(northeast))). then(at(utak, corner(northwest))).",
-)
+
+
+def beside_thing(utak_at: str, first: str, then: str) -> utak.Scenario:
+    """Return a room with a brick near its north wall, and a robot that goes to two corners."""
+    return utak.Scenario.from_text(
+        world=f"""table(36, 24).
+        verge("POLYGON ((0 0, 0 24, 36 24, 36 0, 0 0), (2 2, 34 2, 34 22, 2 22, 2 2))").
+        object(a, c, "POLYGON ((14 12, 19 12, 19 19, 14 19, 14 12))").
+        utak("POINT ({utak_at})", 0).""",
+        start="",
+        goal=f"first(at(utak, corner({first}))). then(at(utak, corner({then}))).",
+    )
+
+
+def four_rooms(door_ends: int, things: str = "") -> utak.Scenario:
+    """Return four rooms in a ring; the door in the north, which begins at 24, ends at some y."""
+    outside, north = "(0 0, 0 36, 44 36, 44 0, 0 0)", door_ends
+    inside = (
+        "(2 2, 20 2, 20 7, 22 7, 22 2, 42 2, 42 17, 35 17, 35 19, 42 19, 42 34, "
+        f"22 34, 22 {north}, 20 {north}, 20 34, 2 34, 2 19, 9 19, 9 17, 2 17, 2 2)"
+    )
+    middle = "((20 12, 22 12, 22 24, 20 24, 20 12))"
+    return utak.Scenario.from_text(
+        world=f'table(44, 36).\nverge("MULTIPOLYGON (({outside}, {inside}), {middle})").\n{things}\n'
+        'utak("POINT (6.5 6.5)", 0).',
+        start="",
+        goal="first(at(utak, corner(northeast))). then(at(utak, start)).",
+    )
+
+
+AROUND = beside_thing("6.5 19.5", "northeast", "northwest")
+BELOW = beside_thing("6.5 4.5", "southeast", "southwest")
 PILLAR = [
     "b" * 24,
     "b......................b",
@@ -95,13 +121,72 @@ def test_rules_of_users_lead_over_other_links(tmp_path: Path) -> None:
     assert chosen((rules,)) == (north, length)
 
 
+def way_back(scenario: utak.Scenario, rules: tuple[str, ...] = ()) -> tuple[str, list[tuple[float, float]]]:
+    """Return how a run ended, and where the robot stopped after it had attained its first goal."""
+    episode = utak.Run(scenario, rules=rules, max_steps=30).finish()
+    assert not episode.idle_rules
+    stops = [(float(x), float(y)) for x, y in (step.line["utak"] for step in episode)]
+    turned = max(range(len(stops)), key=lambda n: stops[n][0])  # the first goal lies in the east
+    return str(episode.verdict), stops[turned + 1 :]
+
+
+def north_of_thing(stops: list[tuple[float, float]]) -> bool:
+    return all(y > 19 for x, y in stops if x < 34)
+
+
+def south_of_thing(stops: list[tuple[float, float]]) -> bool:
+    return any(y < 12 and 7 <= x <= 26 for x, y in stops)
+
+
+def through_northwest_room(stops: list[tuple[float, float]]) -> bool:
+    return any(x < 22 and y > 22 for x, y in stops)
+
+
+def through_southeast_room(stops: list[tuple[float, float]]) -> bool:
+    return any(x > 20 and y < 12 for x, y in stops)
+
+
+Side = Callable[[list[tuple[float, float]]], bool]
+WALKS_BACK: dict[str, tuple[utak.Scenario, Side, Side]] = {  # where the way back leads without the rule, and with it
+    "01_wide_ways": (AROUND, north_of_thing, south_of_thing),
+    "02_not_between_thing_and_wall": (AROUND, north_of_thing, south_of_thing),
+    "03_no_squeezing": (AROUND, north_of_thing, south_of_thing),
+    "04_not_past_bricks": (AROUND, north_of_thing, south_of_thing),
+    "05_never_twice": (AROUND, north_of_thing, south_of_thing),
+    "06_not_past_things": (
+        four_rooms(29, 'object(a, c, "POLYGON ((10 24, 13 24, 13 27, 10 27, 10 24))").'),
+        through_northwest_room,
+        through_southeast_room,
+    ),
+    "07_south_is_cheap": (AROUND, north_of_thing, south_of_thing),
+    "08_narrow_doors_are_dear": (four_rooms(27), through_northwest_room, through_southeast_room),
+    "10_hug_the_walls": (
+        BELOW,
+        lambda stops: all(y < 12 for _, y in stops),
+        lambda stops: any(y > 17 for _, y in stops),
+    ),
+}
+
+
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["01_wide_ways", "02_not_between_thing_and_wall"])
-def test_a_rule_about_links_leads_round_the_other_side_of_a_thing(name: str) -> None:
-    rule = str(ROOT / "docs" / "walk_rules" / f"{name}.lp")
-    without, with_it = (utak.Run(AROUND, rules=rules, max_steps=20).finish() for rules in ((), (rule,)))
-    assert (without.verdict, with_it.verdict) == ("done", "done")
-    assert not with_it.idle_rules
-    back = [[step.line["utak"] for step in episode][4:] for episode in (without, with_it)]
-    assert min(y for _, y in back[0]) > 19  # between the thing and the north wall
-    assert min(y for _, y in back[1]) < 12  # south of the thing
+@pytest.mark.parametrize("name", WALKS_BACK)
+def test_a_rule_about_links_changes_the_walk_as_its_sentence_says(name: str) -> None:
+    scenario, without, with_it = WALKS_BACK[name]
+    verdict, stops = way_back(scenario)
+    assert (verdict, without(stops), with_it(stops)) == ("done", True, False)
+    verdict, stops = way_back(scenario, (str(RULES / f"{name}.lp"),))
+    assert (verdict, with_it(stops)) == ("done", True)
+
+
+@pytest.mark.long
+def test_where_a_rule_leaves_no_walk_the_verdict_names_it() -> None:
+    rule = RULES / "09_no_narrow_door.lp"
+    scenario = utak.Scenario.read(ROOT / "examples" / "go_next_room")
+    episode = utak.Run(scenario, rules=(str(rule),), max_steps=30).finish()
+    assert episode.verdict == "limit"
+    assert f"the rule at {rule}:2 forbids every way there" in episode.reason
+    assert all(step.line["utak"][0] < 22 for step in episode)  # west of the door
+
+
+def test_each_rule_about_links_is_tried() -> None:
+    assert {path.stem for path in RULES.glob("*.lp")} == {*WALKS_BACK, "09_no_narrow_door"}
