@@ -22,7 +22,6 @@ from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
 from utak.kb.mapping.occupancy import OPEN, MapView
 from utak.kb.objects.held_object import held_or_moved
-from utak.kb.objects.shape_fit import ShapeMeasurer
 from utak.kb.objects.touches import Touches
 from utak.kb.perception.interpretation import interpret_regions
 from utak.kb.perception.regions import map_regions
@@ -53,7 +52,6 @@ class Knowledge:
         self._touches = Touches()
         self._names = self._former_names = ObjectNames()  # on this map; on the one of before
         self._completions = NO_COMPLETION_SUMMARY
-        self._measurer = ShapeMeasurer()
 
     @property
     def memory(self) -> TrackerState:
@@ -209,13 +207,11 @@ class Knowledge:
     def _with_objects(self, model: WorldModel) -> WorldModel:
         """Return a world model with its objects: those seen on the map, and those that were held."""
         held = self.memory.held_objects
-        objects = seen_objects(
-            model, lambda patches: self._names.assign(patches, held), self._measurer, self._touches, self.rules
-        )
+        objects = seen_objects(model, lambda patches: self._names.assign(patches, held), self._touches, self.rules)
         if held:
             model = replace(model, floor_under_moved=model.space)
         for load in list(held.values()):
-            self.tracker.update_object(classified(load, self._measurer, self.rules))
+            self.tracker.update_object(classified(load, self.rules))
         for load in self.memory.held_objects.values():
             model, patch = lay_upon(model, load)
             objects += (held_node(load, patch, int(model.labels.max())),)

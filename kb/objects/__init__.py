@@ -11,8 +11,8 @@ movability      whether things can be moved, decided by kb/asp/movable.lp
 persistence     how likely things out of sight still lie where they lay, by kb/asp/persistence.lp
 touches         the colours that were felt, square by square
 
-Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit);
-`possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `movabilities`,
+Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurement`, `measure_seen`, `measure_whole`
+(shape_fit); `possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `movabilities`,
 `Movability`, `MotionHistory` (movability); `persistences`, `Persistence`, `ChangesByOthers` (persistence);
 `Touches` (touches).
 """

@@ -22,7 +22,7 @@ from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_in
 from utak.kb.objects.movability import MotionHistory, movabilities, square_ways
 from utak.kb.objects.persistence import Persistence, persistences
 from utak.kb.objects.proportions import corrected_shape
-from utak.kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
+from utak.kb.objects.shape_fit import ShapeMeasurement, measure_seen, measure_whole
 from utak.kb.objects.touches import Touches
 from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
 from utak.kb.perception.interpretation import (
@@ -139,7 +139,6 @@ def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
 def seen_objects(
     model: WorldModel,
     assign_names: Callable[[list[Patch]], list[str]],
-    measurer: ShapeMeasurer,
     touches: Touches,
     rules: tuple[Path, ...] = (),
 ) -> tuple[Node, ...]:
@@ -148,7 +147,7 @@ def seen_objects(
     windows = _windows(model, [label_of(r.name) for r in regions])
     patches = [patch_of(window.mask, window.view) for window in windows]
     names = assign_names(patches)
-    measured = {n: measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
+    measured = {n: measure_seen(p, model.view) for n, p in zip(names, patches, strict=True)}
     colours = (colour_facts(name, touches.colour_of(patch)) for name, patch in zip(names, patches, strict=True))
     shapes, traced = classify_shapes(shape_facts(measured), rules, (fact for facts in colours for fact in facts))
     measured |= {n: m.traced(p) for (n, m), p in zip(measured.items(), patches, strict=True) if n in traced}
@@ -224,11 +223,11 @@ def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
     return facts
 
 
-def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...] = ()) -> HeldObject:
+def classified(load: HeldObject, rules: tuple[Path, ...] = ()) -> HeldObject:
     """Return an object that was held, classified anew if its shape is open, since it was found to be larger."""
     if load.shape:
         return load
-    measured = measurer.measure_whole(patch_of_polygon(load.first))
+    measured = measure_whole(patch_of_polygon(load.first))
     shapes, _ = classify_shapes(shape_facts({load.name: measured}), rules, colour_facts(load.name, load.colour))
     return replace(load, shape=shapes.get(load.name, {}))
 

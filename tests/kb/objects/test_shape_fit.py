@@ -6,7 +6,7 @@ import shapely
 
 from utak.geometry.shapes.fit import fit_shapes
 from utak.kb.mapping.patch import Patch, patch_of_polygon
-from utak.kb.objects.shape_fit import ShapeMeasurer
+from utak.kb.objects.shape_fit import measure_whole
 from utak.kb.perception.interpretation import classify_shapes
 from utak.kb.world.objects import shape_facts
 
@@ -33,7 +33,7 @@ def patch(rows: list[str]) -> Patch:
 @pytest.mark.parametrize("rows", OF_NO_CLASS.values(), ids=OF_NO_CLASS)
 def test_what_is_of_no_class_has_the_outline_of_its_squares(rows: list[str]) -> None:
     drawn = patch(rows)
-    measured = ShapeMeasurer().measure_whole(drawn)
+    measured = measure_whole(drawn)
     _, traced = classify_shapes(shape_facts({"o1": measured}))
     assert traced == {"o1"}
     outline = measured.traced(drawn).polygon
@@ -45,7 +45,7 @@ def test_what_is_of_no_class_has_the_outline_of_its_squares(rows: list[str]) -> 
 @pytest.mark.parametrize("rows", OF_A_CLASS.values(), ids=OF_A_CLASS)
 def test_what_is_of_a_class_has_the_outline_of_its_class(rows: list[str]) -> None:
     drawn = patch(rows)
-    measured = ShapeMeasurer().measure_whole(drawn)
+    measured = measure_whole(drawn)
     assert not classify_shapes(shape_facts({"o1": measured}))[1]
     assert patch_of_polygon(measured.polygon).squares() == drawn.squares()
     assert fit_shapes(drawn.mask)[0].misfit == 0
@@ -53,11 +53,11 @@ def test_what_is_of_a_class_has_the_outline_of_its_class(rows: list[str]) -> Non
 
 def test_squares_that_touch_at_a_corner_alone_have_no_outline() -> None:
     drawn = patch(["##..", "##..", "..##", "..##"])
-    measured = ShapeMeasurer().measure_whole(drawn)
+    measured = measure_whole(drawn)
     assert measured.traced(drawn) == measured
 
 
 def test_a_hole_is_not_in_the_outline() -> None:
     drawn = patch(["####", "#..#", "####"])
-    outline = ShapeMeasurer().measure_whole(drawn).traced(drawn).polygon
+    outline = measure_whole(drawn).traced(drawn).polygon
     assert outline.equals(shapely.box(3, -2, 7, 1))

@@ -15,7 +15,7 @@ from utak.kb.body import Grasp, Move, Release
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView
 from utak.kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from utak.kb.objects.held_object import HeldObject
-from utak.kb.objects.shape_fit import ShapeMeasurer
+from utak.kb.objects.shape_fit import measure_seen
 from utak.kb.perception.frame import Frame
 from utak.kb.world.corners import corners
 from utak.kb.world.facts import Places, model_facts
@@ -111,7 +111,7 @@ def test_known_objects_are_measured_right(shape: str) -> None:
     framed = np.pad(full, 2)
     state = np.where(framed, OCCUPIED, FREE).astype(np.int8)
     view = MapView(-7, 4, framed.astype(np.float32), state, np.ones_like(framed), np.zeros(state.shape, np.int16))
-    measured = ShapeMeasurer().measure(patch_of(framed, view), view)
+    measured = measure_seen(patch_of(framed, view), view)
     assert measured.fits[0] == (shape, 0)
     assert measured.open == 0
     assert measured.polygon.area == pytest.approx(full.sum())
@@ -123,7 +123,7 @@ def test_a_patch_that_is_hardly_settled_is_not_measured() -> None:
     state[1, 1] = OCCUPIED
     thing = np.ones((4, 4), bool)
     view = MapView(0, 0, np.full((4, 4), 0.5, np.float32), state, thing, np.zeros((4, 4), np.int16))
-    measured = ShapeMeasurer().measure(patch_of(thing, view), view)
+    measured = measure_seen(patch_of(thing, view), view)
     assert (measured.fits, measured.polygon, measured.open) == ((), None, 15)
 
 
