@@ -141,3 +141,23 @@ def test_an_object_is_brought_into_a_corner_of_slanted_walls(tmp_path: Path) -> 
     last, result = episode(tmp_path, SLANTED_CORNER, "object(x). shape(x, square).\n", goal)
     assert result["verdict"] == "done"
     assert shapely.Polygon(last["objects"]["t1"]).distance(shapely.Point(5.926, 2.0)) <= 2.0
+
+
+WITHIN_REACH_OF_A_CORNER = """\
+table(27, 21).
+verge("POLYGON ((0 0, 0 21, 27 21, 27 0, 0 0), (26 2, 26 20, 2 20, 2 2, 26 2))").
+utak("POINT (23.5 14.5)", 90).
+object(t1, x, "POLYGON ((5 10, 5 13, 8 13, 8 10, 5 10))").
+object(t2, o, "POLYGON ((21 8, 19 8, 19 12, 21 12, 21 8))").
+"""
+
+
+@pytest.mark.parametrize("first", few(["at(utak, x)", "at(utak, corner(northeast))"], 1))
+def test_a_thing_is_brought_beside_a_corner_and_not_into_it(tmp_path: Path, first: str) -> None:
+    """The robot itself is to stand there, so the corner stays free."""
+    second = {"at(utak, x)": "at(utak, corner(northeast))"}.get(first, "at(utak, x)")
+    start = "object(x). shape(x, square).\n"
+    last, result = episode(tmp_path, WITHIN_REACH_OF_A_CORNER, start, f"{first}.\n{second}.\n")
+    assert result["verdict"] == "done"
+    assert last["step"] <= 10
+    assert shapely.Point(last["utak"]).distance(shapely.Point(2, 20)) <= 2  # the corner, seen from the table

@@ -42,8 +42,9 @@ def beside_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
     return replace(found, must_reach=KnownEnds()) if target.movable else found  # it may be brought elsewhere
 
 
-def touching(shape: Any, target: Any, name: str) -> Placement:
+def touching(shape: Any, target: Any, name: str, stays_free: bool = False) -> Placement:
     """Return where a shape is within one square of a target; both are shapely geometries in squares, one frame."""
+    # stays_free : whether the shape may not cover any of the target.
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
     level = ((x0 + x1) - (west + east)) / 2, ((y0 + y1) - (south + north)) / 2
@@ -52,10 +53,12 @@ def touching(shape: Any, target: Any, name: str) -> Placement:
     shifts |= {"west": (x0 - east, level[1]), "south": (level[0], y0 - north)}
     ends = {f"{name}_{side}": At(Pose(dx, dy, 0.0)) for side, (dx, dy) in shifts.items()}
     near = target.envelope.buffer(min(east - west, north - south) + BESIDE_AXIS_DISTANCE, join_style="mitre")
+    covers = stays_free and shape.intersection(target).area > 0.0
+    near = near.difference(target) if stays_free else near
     far = Inside(target.buffer(math.hypot(east - west, north - south) + BESIDE_DISTANCE))
     return Placement(
         ends,
-        holds=shape.distance(target) <= BESIDE_DISTANCE,
+        holds=shape.distance(target) <= BESIDE_DISTANCE and not covers,
         loose={name: Inside(near)},
         must_reach=KnownEnds({name: far}),
         some=True,

@@ -118,4 +118,4 @@ def ready_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
     squares = indices_to_mask(where.squares, situation.model.labels.shape)
     if len(where.squares) > MAX_SPOT_SQUARES:
         return Placement(RegionEnds({"within": squares | own if (squares & own).any() else squares}).ends())
-    return touching(to_view_frame(node.polygon, situation), mask_to_polygon(squares), ROBOT)
+    return touching(to_view_frame(node.polygon, situation), mask_to_polygon(squares), ROBOT, stays_free=True)
