@@ -8,6 +8,7 @@ then, and something stands ahead of it. Walls that were seen twice are straight,
 
 import math
 from collections.abc import Iterable
+from itertools import islice
 
 from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, partial_outcome, predicted_outcome
@@ -28,7 +29,7 @@ from utak.kb.mapping.obstacle_chance import ObstacleChance
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considered; tuned
-MAX_ENDS = 24  # ends that are considered: bounds the time of one explanation; tuned
+MAX_ENDS = 24  # ends that a look agrees with and that are weighed: bounds the time of one explanation; tuned
 NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
 
 
@@ -106,8 +107,7 @@ def possible_ends(situation: ObservedSituation) -> list[Explanation]:
         return []
     first = ends[0].place
     far = [one if one.outcome else one._replace(distance=math.dist(one.place, first)) for one in contacts]
-    likely = sorted((one for one in far if _chance(one) > MIN_END_CHANCE), key=lambda one: -_chance(one))
-    return [*ends, *likely[:MAX_ENDS]]
+    return [*ends, *sorted((one for one in far if _chance(one) > MIN_END_CHANCE), key=lambda one: -_chance(one))]
 
 
 def _chance(end: Explanation) -> float:
@@ -154,9 +154,8 @@ def consistent_explanations(situation: ObservedSituation, explanations: Iterable
     state = situation.state
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}
-    for one in explanations:
-        if residual_at(situation, one.place, one.outcome):
-            continue
+    fitting = (one for one in explanations if not residual_at(situation, one.place, one.outcome))
+    for one in islice(fitting, MAX_ENDS):
         held_objects = situation.objects_after(one.outcome)
         after = situation.map_after(held_objects, one.place)
         if _settle_contact(after, one) and not count_clashes(

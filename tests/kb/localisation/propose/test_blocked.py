@@ -106,3 +106,16 @@ def test_a_long_push_along_a_wall_is_not_taken_for_a_shorter_one() -> None:
     tracker = awake(room, (20, 6), thing)
     tracker.accommodate(Push(24.0, 0.0), impression(around(translate(thing, 24, 0), room), (44, 6)))
     assert tracker.state.place == (24.5, 0.5)
+
+
+def test_no_end_of_a_long_push_is_left_out_before_the_look() -> None:
+    """There are more than two dozen; which of them the look agrees with tells them apart, not their number."""
+    rows = ["b" * 90, *["b" + "." * 88 + "b"] * 14, "b" * 90]
+    rows[3:12] = ["b" + "." * 65 + "ccc" + "." * 20 + "b"] * 9
+    thing, room = translate(BRICK, 21, 5), world_of(rows)
+    look = count_ranges(impression(around(translate(thing, 43, 0), room), (63, 6)).retina)
+    situation = ObservedSituation(awake(room, (20, 6), thing).state, Push(60.0, 0.0), look)
+    ends = possible_ends(situation)
+    assert len(ends) > 40
+    assert sum(end.chance or 0.0 for end in ends) > 0.999
+    assert any(end.place == pytest.approx((43.5, 0.5)) for end in ends)  # where it was stopped
