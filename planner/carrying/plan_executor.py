@@ -350,7 +350,8 @@ class PlanExecutor:
         self._pushed = motion if isinstance(motion, Translate) else None
         rest = replace(leg, motions=leg.motions[1:])
         self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
-        why = f"{plan.name} is carried to its place ({plan.target})"
+        moved = "pushed" if isinstance(motion, Translate) else "turned"
+        why = f"{plan.name} is {moved} on the way to its place ({plan.target})"
         return Act(command_of(motion, model), why, steps=plan.steps(model))
 
     def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
