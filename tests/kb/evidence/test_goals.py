@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from utak.kb.evidence.reason import Depth, ReasonKind
+from utak.kb.language.atoms import atom_parts
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
@@ -74,3 +75,27 @@ def test_what_the_robot_touches_is_shown_by_what_it_feels(blocked: Questions) ->
     assert touching
     for fact, step in touching:
         assert ReasonKind.TOUCH in [one.kind for one in blocked.why(fact, step).rests_on]
+
+
+def test_the_cells_that_are_shown_of_a_stretch_of_wall_are_of_its_own_squares(blocked: Questions) -> None:
+    stretches = [
+        (step, fact) for step in blocked.beliefs.record.steps for fact in step.facts if fact.startswith("stretch(")
+    ]
+    assert stretches
+    for step, fact in stretches:
+        (shown,) = blocked.why(fact, step.number).rests_on
+        west, south, east, north = map(int, atom_parts(fact)[1][1:])
+        for column, row in shown.data["squares"]:
+            x, y = (100 * value for value in step.frame.place_to_utak(column + 0.5, row + 0.5))
+            assert west <= x <= east and south <= y <= north
+        assert shown.data["squares"]
+        unfelt = blocked.why(f"plug({atom_parts(fact)[1][0]}, C)", step.number)
+        assert fact in [one.claim for one in unfelt.rests_on]
+
+
+def test_of_a_neck_seen_on_one_side_alone_the_floor_between_its_walls_is_shown(blocked: Questions) -> None:
+    for step in blocked.beliefs.record.steps:
+        for fact in step.long_facts:
+            if fact.startswith("door("):
+                told = blocked.why(fact, step.number).text(Depth.LONG)
+                assert "the floor between the walls: free: nothing was seen" not in told
