@@ -14,6 +14,7 @@ from utak.kb.task.task import Task
 from utak.planner.agenda.choice import Activity, Agenda, StageEnd
 from utak.planner.agenda.own_goals import OwnGoals
 from utak.planner.carrying.open_facts import open_fact_against
+from utak.planner.carrying.remaining_plan import RemainingPlan
 from utak.planner.constraints import avoidances
 from utak.planner.deciding.clearing import ObstacleClearer
 from utak.planner.deciding.errands import ErrandRunner
@@ -32,7 +33,7 @@ from utak.planner.situation import Situation
 from utak.planner.step_rules import refusal
 from utak.planner.steps import steps_of
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
-from utak.planner.tasking.setting import waiting_goal
+from utak.planner.tasking.setting import place_name, waiting_goal
 from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
 
 # As what steps of a plan activities without one of that name are done, where there is no task plan.
@@ -123,6 +124,9 @@ class Activities:
             activity.kind in ("errand", "wish")
             or (activity.kind == "go" and errands[0].action == "arrive")
             or errands[:1] == self._bare.errands
+            or (
+                not errands[0].settles and errands[0].place == _carried_to(activity, decision, errands[0].subject, turn)
+            )
         )
 
     def _as_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> TaskPlan:
@@ -148,11 +152,10 @@ class Activities:
         node, situation = turn.situation.object_of(str(goal.args[0])), turn.situation
         if node is None or node.polygon is None:
             return False
-        moves = any(step.startswith((f"push({node.name},", f"turn({node.name},")) for step in decision.steps)
-        end = turn.executor.end_of(node.name) if moves else None
-        if end is None:
+        plan = _under_way(decision, node.name, turn)
+        if plan is None:
             return self.holds(situation)(goal)
-        land, outline = self.errands.intention.where.of(goal, node, situation), to_view_frame(end, situation)
+        land, outline = self.errands.intention.where.of(goal, node, situation), to_view_frame(plan.end, situation)
         return meets_any_end(land.ends, outline) or meets_any_end(land.hoped.ends(), outline)
 
     def _facts(self, turn: StageTurn) -> Iterator[str]:
@@ -259,6 +262,18 @@ class Activities:
             who = "the robot" if actor == ROBOT else actor
             return f"{who} went through {door.name}, which users' rules close"
         return self.keeper.doubt_of_done(situation)
+
+
+def _under_way(decision: Decision, name: str, turn: StageTurn) -> RemainingPlan | None:
+    """Return what is left of the plan with an object that a decision goes on with; None where it moves it by none."""
+    moves = any(step.startswith((f"push({name},", f"turn({name},")) for step in decision.steps)
+    return turn.executor.plan_of(name) if moves else None
+
+
+def _carried_to(activity: Activity, decision: Decision, name: str, turn: StageTurn) -> str:
+    """Return the place of the task plan to which an activity that pursues a goal carries an object; "" for none."""
+    plan = _under_way(decision, name, turn) if activity.kind == "pursue" else None
+    return "" if plan is None else place_name(activity.subject, plan.target)
 
 
 def _unknown(turn: StageTurn) -> Iterator[str]:

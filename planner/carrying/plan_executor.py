@@ -7,7 +7,6 @@ are where it says, and while the squares that it needs are still believed free.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 from utak.geometry.counts.retina import RETINA_ZONES
 from utak.geometry.kernels.arrays import XY, Bools
@@ -91,9 +90,9 @@ class PlanExecutor:
         legs = () if self._plan is None else self._plan.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
-    def end_of(self, name: str) -> Any:
-        """Return the outline (shapely Polygon, map frame) of an object after the plan under way; None for no such."""
-        return self._plan.end if self._plan is not None and self._plan.name == name else None
+    def plan_of(self, name: str) -> RemainingPlan | None:
+        """Return what is left of the plan under way with an object; None for no such plan."""
+        return self._plan if self._plan is not None and self._plan.name == name else None
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
         """Return what to do to carry an object to one of several ends, or why nothing can be done."""
