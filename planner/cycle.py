@@ -182,13 +182,14 @@ class Robot:
 
     def _planned_facts(self) -> tuple[str, ...]:
         """Return the task plan that is followed, as facts; or which goals none attains, and what was refuted."""
-        plan, attempt, command = self.decider.plan, self.decider.attempt, self.decision.command
+        attempt, command = self.decider.attempt, self.decision.command
         failed = attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
         if command is None:
             return failed
         steps = steps_of(self.decision, self.model)
-        bare = TaskPlan((RECOVERY,)) if self._must_restart else self.decider.bare_plan
-        facts = plan.facts if plan is not None and plan.errands else (*failed, *bare.facts)
+        plan = TaskPlan((RECOVERY,)) if self._must_restart else self.decider.plan
+        attained = {f"unmet({goal.name})" for goal in plan.goals if goal.name not in plan.unmet}
+        facts = (*(() if plan.rounds else (fact for fact in failed if fact not in attained)), *plan.facts)
         return (*dict.fromkeys(facts), *(f"step({number},{step})" for number, step in enumerate(steps)))
 
     def _test(self) -> None:

@@ -91,7 +91,11 @@ def is_corner(moment: Moment, arguments: tuple[str, ...]) -> bool:
     about = [(x + i, y + j) for i in (-1, 0) for j in (-1, 0)]
     along = {square: round(float(np.dot(square, way)), 6) for square in about}
     inmost = [square for square in about if along[square] == min(along.values())]  # two where it looks along the grid
-    return any(all(moment.truth.seems(square, square != inner) for square in about) for inner in inmost)
+    others = {inner: [square for square in about if square != inner] for inner in inmost}
+    return any(
+        moment.truth.is_floor(inner) and all(moment.truth.seems(square, True) for square in beside)
+        for inner, beside in others.items()
+    )
 
 
 def true_rooms(moment: Moment) -> Sequence[BaseGeometry]:

@@ -83,6 +83,11 @@ class TableTruth:
         """Return whether a square is occupied, or free, as it seems: what is crossed and covered in part is both."""
         return self._is_either(square) or self._is_solid(square) == occupied
 
+    def is_floor(self, square: Square) -> bool:
+        """Return whether a square is floor as it seems, also beneath a thing that can be moved."""
+        x, y = square
+        return self.seems(square, False) or any(cover[y, x] for cover in self._covers.values())
+
     def _is_solid(self, square: Square) -> bool:
         x, y = square
         return not (0 <= x < self.width and 0 <= y < self.height) or bool(self._solid[y, x])

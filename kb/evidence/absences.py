@@ -1,23 +1,26 @@
 """Why a fact is not believed: the smallest change of what encodings were given, or what is believed in its place."""
 
+import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from utak.kb.evidence.beliefs import FactExplainer, plain_fact, with_node
 from utak.kb.evidence.inputs import Given, input_reason
 from utak.kb.evidence.plans import TASK_PLAN_NAMES, planned_choice
 from utak.kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
 from utak.kb.evidence.reason import Reason, ReasonKind
-from utak.kb.evidence.record import RecordedStep
 from utak.kb.explanation.query_absence import explain_query_absence
 from utak.kb.explanation.values import Absence
 from utak.kb.explanation.whynot import explain_absence
 from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.goal_words import ROBOT
-from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from utak.kb.language.vocabulary import BELIEF_PREDICATES, Signature, thing_positions
 from utak.kb.perception.interpretation import surest_kind
 from utak.kb.tracing.decisions import SolverCall
 
+NAMED = re.compile("[odr][0-9]+")  # the names of things, rooms and doors
+KINDS_BY_LETTER = {"o": ("object", "node"), "r": ("room", "room"), "d": ("door", "door")}  # with what states each
 WIDER_SHAPES = ("rectangle", "polygon")  # of several classes each
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
 
@@ -39,11 +42,42 @@ class AbsenceExplainer:
             return self._no_object(wanted, arguments[0], step)
         if signature not in BELIEF_PREDICATES:
             return self._not_derived(wanted, signature, step)
+        if meant := self._as_meant(wanted, step):
+            return self.explain(meant, step)
+        if absent := self._no_such(wanted, step):
+            return absent
         if long := long_form(wanted, "C"):
             return self._not_known(wanted, long, step)
         for call, atom, number in self._decisions(wanted, step):
             return self._absence(wanted, step, call, atom, number)
         return self._instead(wanted, step)
+
+    def _as_meant(self, wanted: str, step: int) -> str:
+        """Return a fact about the thing that a word of the task means, if one names a thing in it; else ""."""
+        name, arguments = atom_parts(wanted)
+        bound, things = self._facts.record.steps[step].bound, thing_positions((name, len(arguments)))
+        meant = [bound.get(one, one) if at in things else one for at, one in enumerate(arguments)]
+        return f"{name}({','.join(meant)})" if meant != [*arguments] else ""
+
+    def _no_such(self, wanted: str, step: int) -> Reason | None:
+        """Return that a thing, room or door that a fact names is not believed to be there; None where all are."""
+        name, arguments = atom_parts(wanted)
+        facts = [atom_parts(fact) for fact in self._facts.record.steps[step].facts]
+        for one in () if name in TASK_PLAN_NAMES else filter(NAMED.fullmatch, arguments):
+            kind, stated = KINDS_BY_LETTER[one[0]]
+            named = (parts[0] for word, parts in facts if word == stated)
+            there = [other for other in dict.fromkeys(named) if NAMED.fullmatch(other)]
+            if one in there:
+                continue
+            because = f"no {kind} {one} is believed to be there at this step; {', '.join(there) or 'none'} is"
+            below = tuple(self._alternatives(wanted, step))
+            if kind == "door":  # its name says nothing of where it would be: the best of all that are none
+                opening = next(self._opening(step), None)
+                below += () if opening is None else (self._absence(f"door({one})", step, *opening),)
+                because += "" if opening is None else "; of the necks that are no doors this comes nearest"
+            data = {"missing": [wanted], "in_way": [], "partial": False, "found": True}
+            return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {step}", below, data)
+        return None
 
     def _no_object(self, wanted: str, node: str, step: int) -> Reason:
         """Return why a node is no object."""
@@ -99,12 +133,6 @@ class AbsenceExplainer:
                 yield call, f"shape({node},{shape},{_number_or(arguments[2], sure)})", number
         elif name == "bound" and len(arguments) == 2:
             yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
-        elif name in ("door", "connects", "width") and not _is_door(arguments[0], now):
-            yield from self._opening(step)
-            call, number = self._newest("rooms", step, "neck(")
-            if call.facts:
-                more = sum(given.startswith("neck(") for given in call.facts)  # one more neck
-                yield call, f"door({more},100)", number
         elif name == "corner":
             yield from self._corner(arguments, step)
         elif name == "plan" and len(arguments) == 2:
@@ -146,7 +174,9 @@ class AbsenceExplainer:
         in_way = tuple(
             input_reason(self._facts.record, Given(given, call, made), self._facts.reason) for given in found.in_way
         )
-        return self._reason_of(fact, found, in_way, step)
+        region = self._facts.record.steps[step].regions.get((atom_parts(fact)[1] or ("",))[0], "")
+        said = f"{region} is its region of the map; {found.sentence}" if region and region in atom else found.sentence
+        return self._reason_of(fact, replace(found, sentence=said), in_way, step)
 
     def _reason_of(self, fact: str, found: Absence, in_way: tuple[Reason, ...], step: int) -> Reason:
         """Return an absence as a reason. in_way : the reasons of what is in the way."""
@@ -211,15 +241,15 @@ class AbsenceExplainer:
             because = f"no stretch {thing} was measured: no wall there was left unfelt with floor on both sides"
         elif name == "joined" and not instead:
             because = "no border that they have in common was measured, or they were felt in different colours"
-        elif name in ("door", "connects", "width") and not instead:
-            because = "doors are necks of the floor, by kb/asp/rooms.lp, and no neck was measured so far"
+        elif name in ("door", "connects") and instead:
+            because = "this is believed of it instead"
         elif instead:
             how = "felt" if name == "colour" else "measured"
             because = f"it would have to be {how} so; this is believed instead"
         elif f"node({thing})" in self._facts.record.steps[step].fact_set:
             because = f"{thing} is believed to be there, but nothing that was seen, felt or done says this of it"
         else:
-            because = "no such thing is believed to be there at this step"
+            because = f"nothing is believed to be {thing} at this step"
         data = {"missing": [fact], "in_way": [reason.claim for reason in instead], "partial": False, "found": True}
         return Reason(f"not {fact}", because, ReasonKind.NEGATION, f"step {step}", instead, data)
 
@@ -236,11 +266,6 @@ class AbsenceExplainer:
             reason = self._facts.reason(other, step)
             if reason is not None:
                 yield reason
-
-
-def _is_door(door: str, now: RecordedStep) -> bool:
-    """Return whether anything is believed of a door, with whatever confidence."""
-    return any(fact.startswith((f"door({door},", f"door({door})")) for fact in now.facts)
 
 
 def _is_offered(planned: str, call: SolverCall) -> bool:

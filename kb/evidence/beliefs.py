@@ -5,23 +5,26 @@ from collections.abc import Callable
 from itertools import islice
 from typing import Protocol
 
-from utak.kb.evidence.inputs import Given, input_reason, squares_reason
+from utak.kb.evidence.inputs import Given, input_reason, squares_reason, stretch_reason
 from utak.kb.evidence.plans import PLAN_ENCODING, TASK_PLAN_NAMES, plan_fact_reason
 from utak.kb.evidence.proving import words_of
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
 from utak.kb.evidence.witness import (
+    beside_reason,
     command_reason,
     felt_reason,
     line_squares,
     node_squares,
     seen_reason,
+    touch_reasons,
 )
 from utak.kb.language.atoms import atom_parts, long_form
 from utak.kb.language.diagnostics import BadInputError, did_you_mean
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import thing_positions
 from utak.kb.tracing.decisions import SolverCall
+from utak.kb.world.chances import MAX_DOOR_WIDTH
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
 PART_NAME = re.compile(r"(o\d+)_\d+")  # of a part of an object
@@ -111,16 +114,15 @@ class FactExplainer:
             return self._movable_reasons(node, arguments[1], step)
         if name in ("may_be", "joined", "hidden", "plug", "loc"):
             found = self.decision("chances", fact, step, oldest=step)
-            return [found] if found else []
+            return [*([found] if found else []), *self._facts([f"stretch({node},"] * (name == "plug"), step)]
         if name == "held":
             return self._grasp_reasons(node, step)
         if name == "segment":
             return self._segment_reasons(node, arguments, step)
         if name == "adjacent":
-            things = sorted(arguments[:2], key=lambda thing: thing != ROOT_NODE)
-            return self._facts([f"{'offset' if one == ROOT_NODE else 'rect'}({one}," for one in things], step)
+            return self._touching_reasons(arguments[0], arguments[1], step)
         if name == "stretch":
-            return [squares_reason(self.record, step, VERGE_NODE)]
+            return [stretch_reason(self.record, step, arguments)]
         if name in ("region", "part_of"):
             return self._region_reasons(node, step)
         if name == "bound":
@@ -133,6 +135,15 @@ class FactExplainer:
             counts = f"the counts of the impressions up to {step} leave them open"
             return [Reason(f"{arguments[1]} squares of {node} are open", counts, ReasonKind.MEASURED, f"step {step}")]
         return self._other_reasons(name, arguments, step)
+
+    def _touching_reasons(self, one: str, other: str, step: int) -> list[Reason]:
+        """Return why two things touch: where they lie, what the robot feels of one, the wall beside the other."""
+        first, second = sorted((one, other), key=lambda thing: (thing != ROOT_NODE, thing == VERGE_NODE))
+        places = [f"{'offset' if one == ROOT_NODE else 'rect'}({one}," for one in (first, second) if one != VERGE_NODE]
+        if first == ROOT_NODE:
+            return [*touch_reasons(self.record, step, second), *self._facts(places, step)]
+        beside = beside_reason(self.record, step, first) if second == VERGE_NODE else None
+        return [*self._facts(places, step), *([] if beside is None else [beside])]
 
     def _meaning_reasons(self, parameter: str, node: str, step: int) -> list[Reason]:
         """Return why a parameter means a node: by reconciliation, and by the task plan where that chose."""
@@ -162,8 +173,19 @@ class FactExplainer:
         if (found := PART_NAME.fullmatch(node)) is not None:
             return [squares_reason(self.record, step, found[1])]
         if name == "in":
-            return [squares_reason(self.record, step, node), *self._facts([f"room({arguments[1]})"], step)]
+            about = self._facts([f"kind({node},object,", f"room({arguments[1]})"], step)
+            return [self._shares_reason(node, step), squares_reason(self.record, step, node), *about]
         return [squares_reason(self.record, step, node)]
+
+    def _shares_reason(self, node: str, step: int) -> Reason:
+        """Return in which rooms the middle of a thing may lie."""
+        facts = [atom_parts(fact)[1] for fact in self.record.steps[step].long_facts if fact.startswith(f"in({node},")]
+        rooms = " and ".join(f"{room} with {share} percent" for _, room, share in facts)
+        because = (
+            f"by the squares in which it may lie: {rooms}; near a door both sides count alike, and the likeliest "
+            "room has what was counted for such shares"
+        )
+        return Reason(f"the middle of {node} lies in one of these rooms", because, ReasonKind.MEASURED, f"step {step}")
 
     def _room_reasons(self, room: str, step: int) -> list[Reason]:
         """Return why a part of the floor is a room: the doors that bound it, as far as they are believed."""
@@ -220,22 +242,24 @@ class FactExplainer:
         if name == "crosses":
             return self._facts([f"link({arguments[0]},", f"threshold({arguments[1]},"], step)
         door = arguments[0]
+        if name != "door":
+            return [*self._facts([f"door({door},"], step), *_measured_between(name, arguments, step)]
         ends = self.record.steps[step].necks.get(door)
         for number, call in self.record.answers(step, "rooms") if ends is not None else ():
             for atom in call.answer or ():
                 kind, (neck, *_) = atom_parts(atom)
                 if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == ends:
-                    return [self.prove(call, atom, number), *_door_doubts(name, arguments, atom, step)]
+                    return [self.prove(call, atom, number), *_door_doubts(arguments, atom, step)]
         return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a corner is the furthest one: the answer of corners.lp with its place."""
-        side, east, north, *_ = arguments
+        side, east, north, share = arguments
         for number, call in self.record.answers(step, "corners"):
             for atom in call.answer or ():
                 kind, parts = atom_parts(atom)
                 if kind == "furthest" and parts[0] == side and f"convex({parts[1]},{east},{north})" in call.facts:
-                    return [self.prove(call, atom, number)]
+                    return [self.prove(call, atom, number), *_corner_counts(share, step)]
         return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _movable_reasons(self, node: str, confidence: str, step: int) -> list[Reason]:
@@ -305,14 +329,37 @@ class FactExplainer:
         return BadInputError.about("why", fact, f"this is not believed at step {step}", hint)
 
 
-def _door_doubts(name: str, arguments: tuple[str, ...], chosen: str, step: int) -> list[Reason]:
-    """Return why a door is not believed as rooms.lp has it; [] where it is."""
-    if name not in ("door", "connects") or arguments[-1] == atom_parts(chosen)[1][-1]:
+def _corner_counts(share: str, step: int) -> list[Reason]:
+    """Return from where the percent of belief in a corner comes; [] for what is settled."""
+    if share in ("0", "100"):
         return []
-    doubts = "a square on its line, a wall at its ends, or how wide it and the floor beside it are"
-    counted = f"{arguments[-1]} percent of such necks were doors"
-    because = f"this is not settled: {doubts}; {counted}"
+    because = f"of corners with squares about them that were as likely floor and wall, {share} percent were corners"
+    return [Reason("how sure it is", f"{because}, by what was counted", ReasonKind.MEASURED, f"step {step}")]
+
+
+def _door_doubts(arguments: tuple[str, ...], chosen: str, step: int) -> list[Reason]:
+    """Return why a door is not believed as rooms.lp measures it; [] where it is."""
+    share = arguments[-1]
+    if share == atom_parts(chosen)[1][-1]:
+        return []
+    because = f"of necks measured alike {share} percent were doors, by what was counted"
     return [Reason("it is not beyond doubt", because, ReasonKind.MEASURED, f"step {step}")]
+
+
+def _measured_between(name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
+    """Return between what the bounds of the width of a door were measured; [] for other facts of doors."""
+    if name != "width" or len(arguments) != 3:
+        return []
+    least, most = (f"{int(value) / FACT_UNITS_PER_SQUARE:g} squares" for value in arguments[1:])
+    sure = f"the floor on its line that is free beyond doubt is {least} wide"
+    walls = f"the nearest squares that are wall beyond doubt, on both ends, leave at most {most} between them"
+    beyond = "no wall beyond doubt was seen on both ends" if _is_unbounded(arguments[2]) else walls
+    return [Reason("its bounds", f"{sure}; {beyond}", ReasonKind.MEASURED, f"step {step}")]
+
+
+def _is_unbounded(most: str) -> bool:
+    """Return whether the greatest width of a door, in hundredths of squares as text, is that of the largest table."""
+    return int(most) >= int(FACT_UNITS_PER_SQUARE * MAX_DOOR_WIDTH)
 
 
 def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
@@ -322,6 +369,9 @@ def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
         return f"where the robot believes that it woke lies {east:g} squares east and {north:g} north of where it is"
     if name == "kind" and len(arguments) == 3 and arguments[0] in (FLOOR_NODE, VERGE_NODE):
         return f"the squares of the {arguments[0]} are such with {arguments[2]} percent on average"
+    if name == "width" and len(arguments) == 3 and _is_unbounded(arguments[2]):
+        least, what = int(arguments[1]) / FACT_UNITS_PER_SQUARE, f"what is taken for door {arguments[0]}"
+        return f"{what} is at least {least:g} squares wide" if least else f"nothing settled bounds how wide {what} is"
     return words_of("belief", fact)
 
 

@@ -7,21 +7,24 @@ from typing import Any
 from utak.kb.evidence.beliefs import FactExplainer
 from utak.kb.evidence.plans import plan_step_reasons
 from utak.kb.evidence.reason import Reason, ReasonKind
-from utak.kb.evidence.witness import command_reason
+from utak.kb.evidence.record import Record
+from utak.kb.evidence.witness import command_reason, line_squares, node_squares, seen_reason
 from utak.kb.language.atoms import atom_parts
-from utak.kb.language.goal_words import GOAL_WORDS, PLACE_FACTS, ROBOT, WRAPPING_GOALS
+from utak.kb.language.goal_words import GOAL_WORDS, PLACE_FACTS, ROBOT, WRAPPING_GOALS, Holds
 from utak.kb.tracing.decisions import SolverCall
-from utak.kb.world.model import ROOT_NODE
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE, ROOT_NODE, VERGE_NODE
 
 AGENDA = "agenda"  # the encoding that chooses activities and verdicts
 CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
     AGENDA: ("do", "this activity was chosen"),
     "aims": ("choose", "this subgoal was chosen"),
-    "walks": ("walked", "this way was chosen"),
-    "transport": ("try", "geometry was asked for this way of carrying"),
+    "walks": ("walked", "this way was chosen, before it was pulled tight"),
+    "transport": ("try", "geometry was asked for this way of carrying (to what end, over how sure squares)"),
     "feel": ("feel", "this halt was chosen to feel walls"),
     "boldness": ("take", "this manipulation plan was taken"),
 }
+
+ASKED_IN_VAIN = frozenset({"transport"})  # those of which the choice counts also where it led to no command
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
         return Reason("the robot wakes", "every run begins so", ReasonKind.CONVENTION, "step 0")
     command = command_reason(now)
     planned = plan_step_reasons(beliefs, step - 1)
-    below = (*planned, *_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
+    choices = (reason for _, reason in _choices(beliefs, step - 1))
+    below = (*planned, *_goal_reasons(beliefs, task, step - 1), *choices)
     return Reason(command.claim, now.why, ReasonKind.COMMAND, f"step {step}", below, command.data)
 
 
@@ -49,8 +53,10 @@ def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None
         return None
     last = len(beliefs.record.steps) - 1
     claim = f"verdict({task.result['verdict']})"
-    ruled = _ruled_verdicts(beliefs, claim, last)
-    below = (*ruled, *plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
+    ruled = tuple(_ruled_verdicts(beliefs, claim, last))
+    asked = ASKED_IN_VAIN if ruled else CHOICES.keys()
+    choices = (reason for encoding, reason in _choices(beliefs, last) if encoding in asked)
+    below = (*ruled, *plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *choices)
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 
 
@@ -62,6 +68,7 @@ def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
     facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
     now = (reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
     below = (*now, *_began(beliefs, name, arguments, step))
+    below += tuple(_unbound(beliefs, name, arguments, step)) if below else ()
     says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
     return Reason(goal, says, ReasonKind.INPUT if below else ReasonKind.TASK, "the task", below)
 
@@ -77,15 +84,55 @@ def _meant(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Itera
     yield from (f"bound({argument},{bound[argument]})" for argument in arguments if argument in bound)
 
 
+def _unbound(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[Reason]:
+    """Yield for each door or room of a goal that nothing is bound to it."""
+    kinds = GOAL_WORDS[name].parameters if name in GOAL_WORDS else ()
+    for argument, names in zip(arguments, kinds, strict=False):
+        kind = (names or ("",))[0]
+        if kind in ("door", "room") and "(" not in argument and argument not in beliefs.record.steps[step].bound:
+            says = f"no {kind} is bound to it; where the task says nothing else of it, any {kind} will do"
+            yield Reason(f"the task's {argument}", says, ReasonKind.TASK, f"step {step}")
+
+
 def _began(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[Reason]:
-    """Yield where the thing of a goal was first believed to lie before a step, where the goal depends on that."""
+    """Yield where the thing of a goal was first seen, where the goal depends on that, and the way that it demands."""
+    word, record = GOAL_WORDS.get(name), beliefs.record
     node = _node(beliefs, arguments[0], step) if arguments else ""
-    if name in GOAL_WORDS and GOAL_WORDS[name].from_origin and node not in ("", ROOT_NODE):
-        steps = beliefs.record.steps[:step]
-        places = ((one.number, fact) for one in steps for fact in one.facts if fact.startswith(f"offset({node},"))
-        number, fact = next(places, (step, ""))
-        if reason := beliefs.reason(fact, number):
-            yield replace(reason, because=f"the goal depends on where {node} was at first: {reason.because}")
+    if word is None or not node:
+        return
+    if word.holds is Holds.ALONG_A_TRACK:
+        way = " ".join(f"({east:g} {north:g})" for east, north in record.steps[step].places)
+        yield Reason(
+            f"the robot went {way}", "so far, one point for each impression", ReasonKind.MEASURED, f"step {step}"
+        )
+    places = [(one.number, fact) for one in record.steps[: step + 1] for fact in one.facts if _is_place(fact, node)]
+    if not places or not word.from_origin:
+        return
+    (number, began), (last, now) = places[0], places[-1]
+    if node != ROOT_NODE and number < step and (reason := beliefs.reason(began, number)):
+        seen = (
+            f"the goal depends on where {node} was at first, which is where the middle of what was seen of it then lay"
+        )
+        yield replace(reason, because=f"{seen}: {reason.because}")
+    if word.out_of_sight and last == step:
+        yield from _hiding(record, began, now, step)
+
+
+def _is_place(fact: str, node: str) -> bool:
+    """Return whether a fact says where a node is."""
+    return fact.startswith(f"offset({node},")
+
+
+def _hiding(record: Record, began: str, now: str, step: int) -> Iterator[Reason]:
+    """Yield the wall between two places of a thing, by the facts that say them; nothing where none lies between."""
+    (_, *start), (_, *end) = (atom_parts(fact)[1] for fact in (began, now))
+    first, last = (
+        (int(east) / FACT_UNITS_PER_SQUARE, int(north) / FACT_UNITS_PER_SQUARE) for east, north in (start, end)
+    )
+    verge = set(node_squares(record.steps[step], VERGE_NODE))
+    between = [square for square in line_squares(record.steps[step], first, last, 0.0) if square in verge]
+    if between:
+        yield seen_reason(record, step, between, True, "the wall between where it was at first and where it is now")
 
 
 def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[str]:
@@ -95,7 +142,13 @@ def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], st
     for form in GOAL_WORDS[name].facts if name in GOAL_WORDS else PLACE_FACTS:  # a damaged episode has any name
         start = form.format(*nodes)
         if "(," not in start:
-            yield from (fact for fact in now.long_facts if fact.startswith(start))
+            yield from (fact for fact in now.long_facts if fact.startswith(start) and _leads(fact, now.facts))
+
+
+def _leads(fact: str, facts: Sequence[str]) -> bool:
+    """Return whether a fact is not the width of a door that is believed to lead nowhere yet."""
+    name, arguments = atom_parts(fact)
+    return name != "width" or any(other.startswith(f"connects({arguments[0]},") for other in facts)
 
 
 def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
@@ -115,8 +168,8 @@ def _ruled_verdicts(beliefs: FactExplainer, claim: str, step: int) -> Iterator[R
         yield replace(beliefs.prove(asked[-1], claim, step), because="the agenda ends with this verdict")
 
 
-def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
-    """Yield the reasons of the last choice of each of the planner's encodings at a step, and what it refused."""
+def _choices(beliefs: FactExplainer, step: int) -> Iterator[tuple[str, Reason]]:
+    """Yield what each of the planner's encodings chose last at a step, with its name: why, and what it refused."""
     latest: dict[str, SolverCall] = {}
     for call in beliefs.record.decisions(step):
         if call.encoding in CHOICES and call.answer:
@@ -125,7 +178,7 @@ def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
         predicate, words = CHOICES[encoding]
         for atom in call.answer or ():
             if atom_parts(atom)[0] == predicate:
-                yield replace(beliefs.prove(call, atom, step), because=_about(call, atom) or words)
+                yield encoding, replace(beliefs.prove(call, atom, step), because=_about(call, atom) or words)
 
 
 def _about(call: SolverCall, atom: str) -> str:

@@ -1,12 +1,12 @@
 """Reasons for what encodings were given: regions, necks, corners and fits to cells; properties of nodes to facts."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from utak.geometry.kernels.arrays import Square
+from utak.geometry.kernels.arrays import XY, Square
 from utak.kb.evidence.proving import words_of
 from utak.kb.evidence.reason import Reason, ReasonKind
-from utak.kb.evidence.record import Record
+from utak.kb.evidence.record import Record, RecordedStep
 from utak.kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.goal_words import ROBOT
@@ -119,11 +119,22 @@ def squares_reason(record: Record, step: int, node: str) -> Reason:
     return seen_reason(record, step, squares, node != FLOOR_NODE, f"the squares of {_named(node)}")
 
 
+def stretch_reason(record: Record, step: int, arguments: Sequence[str]) -> Reason:
+    """Return the cells that show a stretch of what bounds the floor. arguments : those of its fact."""
+    now, (west, south, east, north) = record.steps[step], (int(value) for value in arguments[1:])
+    squares = []
+    for column, row in node_squares(now, VERGE_NODE):
+        x, y = (FACT_UNITS_PER_SQUARE * value for value in now.frame.place_to_utak(column + 0.5, row + 0.5))
+        if west <= x <= east and south <= y <= north:
+            squares.append((column, row))
+    return seen_reason(record, step, squares, True, f"the squares of stretch {arguments[0]}")
+
+
 def _neck_reasons(record: Record, given: Given, arguments: tuple[str, ...]) -> list[Reason]:
     """Return the reasons of a neck: the two walls at its ends, and the floor between them."""
     now, ends = record.steps[given.step], given.call.about[int(arguments[0])]
     (west, south), (east, north) = ends
-    between = line_squares(now, (west, south), (east, north), 0.0)
+    between = _both_sides(now, (west, south), (east, north))
     walls = [_beyond(record, given.step, near, far) for near, far in (ends, ends[::-1])]
     width = int(arguments[1]) / FACT_UNITS_PER_SQUARE
     passage = Reason(
@@ -147,7 +158,12 @@ def _beyond(record: Record, step: int, near: list[float], far: list[float]) -> l
     dx, dy = near[0] - far[0], near[1] - far[1]
     length = max((dx * dx + dy * dy) ** 0.5, 1e-9)
     end = near[0] + dx / length, near[1] + dy / length
-    return line_squares(record.steps[step], (near[0], near[1]), end, 0.0)
+    return _both_sides(record.steps[step], (near[0], near[1]), end)
+
+
+def _both_sides(now: RecordedStep, start: XY, end: XY) -> list[Square]:
+    """Return the squares on both sides of a line, which may run between two rows of squares, map frame."""
+    return list(dict.fromkeys(square for side in (-0.1, 0.1) for square in line_squares(now, start, end, side)))
 
 
 def _corner_reasons(record: Record, step: int, arguments: tuple[str, ...]) -> list[Reason]:
@@ -201,7 +217,8 @@ def _chance_reasons(
     if name == "between":
         return [squares_reason(record, step, FLOOR_NODE)]
     if name == "unfelt":
-        return [squares_reason(record, step, VERGE_NODE)]
+        facts = [fact for fact in record.steps[step].facts if fact.startswith(f"stretch({arguments[0]},")]
+        return [stretch_reason(record, step, atom_parts(fact)[1]) for fact in facts]
     if name == "stands":
         return [command_reason(record.steps[step])]
     place = arguments[1] if name == "place" else arguments[0]

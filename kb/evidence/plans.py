@@ -6,18 +6,17 @@ from typing import Protocol
 from utak.kb.evidence.proving import words_of
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
+from utak.kb.evidence.witness import command_reason
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.vocabulary import PLAN_PREDICATES, SETTLING_WORDS
 from utak.kb.tracing.decisions import SolverCall
-from utak.kb.world.stated_plan import circumstance_in_words, stated_plan
+from utak.kb.world.stated_plan import circumstance_in_words, robot_step_in_words, stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
-# What is said of a step of the plan by its number: when the step before it is done, the same is said by a lower one. So
-# these facts, as they stand, are not those of the step of the run at which the plan was made.
-COUNTED_FROM_PRESENT_STEP = frozenset({"takes", "verified"})
+FOUND_WHEN_MADE = frozenset({"refuted", "given"})  # what is said of the step of the run at which the plan was made
 
 
 class PlanExplainer(Protocol):
@@ -39,18 +38,21 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     if name == "means":
         return Reason(fact, says, ReasonKind.TASK, "the task")
     below = tuple(_below(beliefs, name, arguments, step))
-    if below:
-        return Reason(fact, says, ReasonKind.FACT, f"step {step}", below)
-    at = step if name in COUNTED_FROM_PRESENT_STEP else _made_at(beliefs.record, step)
-    kind = ReasonKind.MEASURED if name in ("takes", "verified", "refuted", "given") else ReasonKind.DECIDED
-    return Reason(fact, says, kind, f"step {at}")
+    at = _made_at(beliefs.record, step) if name in FOUND_WHEN_MADE else step
+    kind = ReasonKind.MEASURED if name in ("takes", "verified", *FOUND_WHEN_MADE) else ReasonKind.DECIDED
+    return Reason(fact, says, ReasonKind.FACT if below else kind, f"step {at}", below)
 
 
 def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
     """Yield the reason of the present step of the plan at a step of the run, or of goals that no plan attains."""
     for fact in beliefs.record.steps[step].facts:
-        if fact.startswith(("plan(0,", "unmet(")):
+        name, arguments = atom_parts(fact)
+        if fact.startswith("plan(0,") or (name == "unmet" and any(_search_for(beliefs, arguments[0], step))):
             yield plan_fact_reason(beliefs, fact, step)
+    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}")
+    if plan is not None and len(plan.robot) > 1:
+        told = "; ".join(map(robot_step_in_words, plan.robot))
+        yield Reason("the robot goes on so", told, ReasonKind.DECIDED, f"step {step}")
 
 
 def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[Reason]:
@@ -64,24 +66,49 @@ def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: in
         yield from _decided(beliefs, int(arguments[0]), arguments[1], step)
         yield from _goals_served(beliefs, arguments[0], step)
         yield from _refutations_about(beliefs, arguments[1], step)
+        yield from _what_stands_in_the_way(beliefs.record, arguments[1], step)
         for fact in (f"takes({arguments[0]},", f"verified({arguments[0]})"):
             yield from _stated(beliefs, fact, step)
     elif name == "passes":
         number = int(arguments[0])
         yield from _decided(beliefs, number, f"{DOOR_STEP}({arguments[1]})", step)
     elif name == "unmet":
-        found = _decision(beliefs.record, step)
-        if found is not None and f"unmet({arguments[0]})" in (found[1].answer or ()):
-            yield beliefs.prove(found[1], f"unmet({arguments[0]})", found[0])
-        yield from _refutations_of_goal(beliefs, arguments[0], step)
-        for fact in beliefs.record.steps[step].facts:
-            if fact.startswith("serves(") and atom_parts(fact)[1][1] == arguments[0]:
-                yield from _stated(beliefs, f"plan({atom_parts(fact)[1][0]},", step)
+        searched = tuple(_search_for(beliefs, arguments[0], step))
+        yield from searched or _done_next(beliefs.record, step)
+    elif name == "step":
+        yield from _stated(beliefs, "plan(0,", step)
+        yield from _done_next(beliefs.record, step) if arguments[0] == "0" else ()
     elif name == "refuted":
         yield from _found_by_geometry(beliefs.record, arguments[1], step)
         yield from _stated(beliefs, f"given({arguments[1]},", step)
     elif name == "price":
         yield from _stated(beliefs, "takes(", step)
+
+
+def _search_for(beliefs: PlanExplainer, goal: str, step: int) -> Iterator[Reason]:
+    """Yield what the search for a plan found against a goal, by its name; nothing where none was made."""
+    found = _decision(beliefs.record, step)
+    if found is not None and f"unmet({goal})" in (found[1].answer or ()):
+        yield beliefs.prove(found[1], f"unmet({goal})", found[0])
+    yield from _refutations_of_goal(beliefs, goal, step)
+
+
+def _done_next(record: Record, step: int) -> Iterator[Reason]:
+    """Yield the command that was given after a step, with its reason; nothing after the last one."""
+    yield from map(command_reason, record.steps[step + 1 : step + 2])
+
+
+def _what_stands_in_the_way(record: Record, planned: str, step: int) -> Iterator[Reason]:
+    """Yield what pursuing a goal came to when a step was planned that settles something for it; nothing for others."""
+    action, (subject, *_) = atom_parts(planned)
+    found = _decision(record, step) if action in SETTLING_WORDS else None
+    if found is None or f"occurs({planned},0)" not in (found[1].answer or ()):
+        return
+    for call in record.decisions(found[0]):
+        for about in call.about if call.encoding == "agenda" else ():
+            came, _, why = str(about).partition(": ")
+            if came == f"pursue({subject})":
+                yield Reason(f"activity {came} led no further", why, ReasonKind.DECIDED, f"step {found[0]}")
 
 
 def _found_by_geometry(record: Record, number: str, step: int) -> Iterator[Reason]:
@@ -151,7 +178,7 @@ def _place(refuted: str) -> str:
 
 def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:
     """Return a step of the plan, a refutation or the cost in words; "" for other facts of the plan."""
-    told = name in ("plan", "refuted", "price")
+    told = name in ("plan", "refuted", "price", "step")
     if name == "given":
         return f"refutation {arguments[0]} holds while {circumstance_in_words(arguments[1])}"
     plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if told else None
@@ -159,6 +186,8 @@ def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step:
         return ""
     if name == "price":
         return plan.cost_words
+    if name == "step":
+        return f"step {arguments[0]} of the robot itself: {robot_step_in_words(arguments[1])}"
     if name == "plan":
         return next((one.explained for one in plan.steps if str(one.number) == arguments[0]), "")
     return next((one.words for one in plan.refutations if str(one.number) == arguments[1]), "")

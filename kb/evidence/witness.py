@@ -16,7 +16,7 @@ from utak.kb.evidence.record import Record, RecordedStep
 from utak.kb.evidence.sightings import most_telling, sightings
 from utak.kb.language.vocabulary import MAX_TABLE_SIDE
 from utak.kb.perception.frame import ADJACENT_OFFSETS, Frame
-from utak.kb.world.model import FACT_UNITS_PER_SQUARE
+from utak.kb.world.model import FACT_UNITS_PER_SQUARE, VERGE_NODE
 
 SHOWN_CELLS = 4  # cells that one reason names at most, the most telling ones; a convention
 SAMPLED_SQUARES = 12  # squares of an outline or a line at which cells are looked up, at most; a convention
@@ -67,6 +67,26 @@ def felt_reason(record: Record, step: int, squares: Iterable[Square], colour: st
                 return _touch_reason(what, colour, direction, number)
             anywhere = anywhere or _touch_reason(what, colour, direction, number, ", as it was believed to lie then")
     return anywhere
+
+
+def touch_reasons(record: Record, step: int, node: str) -> list[Reason]:
+    """Return what the robot feels of a node from where it stands at a step."""
+    now = record.steps[step]
+    (x, y), squares = now.square_of(now.places[step]), set(node_squares(now, node))
+    touched = zip(DIRECTIONS, now.touch, ADJACENT_OFFSETS, strict=True)
+    return [
+        _touch_reason(node, colour, direction, step)
+        for direction, colour, offset in touched
+        if colour is not None and squares & {(x + column, y + row) for column, row in _beside(now, offset)}
+    ]
+
+
+def beside_reason(record: Record, step: int, node: str) -> Reason:
+    """Return the cells that show the verge beside a node."""
+    now = record.steps[step]
+    around = {(x + i, y + j) for x, y in node_squares(now, node) for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    beside = [square for square in node_squares(now, VERGE_NODE) if square in around]
+    return seen_reason(record, step, beside, True, f"the squares of the verge beside {node}")
 
 
 def _beside(now: RecordedStep, offset: tuple[int, int]) -> Iterable[Square]:

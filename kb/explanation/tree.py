@@ -122,7 +122,9 @@ class ProofTrees:
             text = substituted(info["text"], values or {})
             literal, _, cases = text.partition(": ")
             number = f"{len(elements)} cases, and in each" if len(elements) > 1 else "one case, and there"
-            told = f"{cases} holds in {number} {literal}" if elements else f"{cases} holds in no case"
+            told = (
+                f"{cases} holds in {number} {literal}" if elements else f"there is no {cases}, so nothing had to hold"
+            )
             yield ProofNode("each", text, told, children=tuple(self._cases(info, elements)))
 
     def _members(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:

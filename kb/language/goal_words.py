@@ -41,6 +41,7 @@ class GoalWord(NamedTuple):
     from_origin: bool = False  # whether its meaning depends on where its subject was at first
     touches: bool = False  # whether its two arguments touch where it holds, so that either of two things may be moved
     fixed: bool = False  # whether the task says where it holds, whatever is found
+    out_of_sight: bool = False  # whether it holds where walls hide its subject from where that was at first
 
 
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
@@ -72,7 +73,11 @@ GOAL_WORDS = {
     "in": GoalWord((NAME_ARGUMENT, _NEXT_ROOM), (_MOVER, ("room",)), _ROOMS, by_door=True, from_origin=True),
     "through": GoalWord((NAME_ARGUMENT, NAME_ARGUMENT), (_MOVER, _DOOR), _ROOMS, by_door=True, from_origin=True),
     "around": GoalWord(
-        (NAME_ARGUMENT, word_argument("place", ["corner"])), (_MOVER, None), PLACE_FACTS, from_origin=True
+        (NAME_ARGUMENT, word_argument("place", ["corner"])),
+        (_MOVER, None),
+        PLACE_FACTS,
+        from_origin=True,
+        out_of_sight=True,
     ),
     "circled": GoalWord(
         (word_argument("walker", [ROBOT]), NAME_ARGUMENT),

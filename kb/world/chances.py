@@ -336,7 +336,10 @@ class Chances:
             is_floor = (column, row) == corner.square
             known = self._surely_free if is_floor else self._surely_occupied
             occupied = float(self._part(self.model.view.probability, row, column, (1, 1), 0.5)[0, 0])
-            chance *= 1 - occupied if is_floor else occupied
+            if not is_floor:
+                chance *= occupied
+            elif self.model.view.state[row, column] != OCCUPIED:  # else it is known floor beneath a thing put there
+                chance *= 1 - occupied
             certain = certain and self._is(known, column + 0.5, row + 0.5)
         if chance <= 0:
             return 0

@@ -107,7 +107,8 @@ class StatedPlan:
     cost: int | None = None
     # A number of commands that no plan stays below, by the estimates of the search; None likewise
     least: int | None = None
-    # Whether the search ended with it; else it is the best one that was found up to the bound on rounds
+    # Whether the search ended with it, or there was none; else it is the best one that was found up to the bound on
+    # rounds
     proved: bool = False
     # The steps of the robot itself with which the present step goes on; the first one is that of the next command
     robot: tuple[str, ...] = ()
@@ -144,7 +145,7 @@ class StatedPlan:
         if not self.steps:
             yield "no step is left" if self.found else "no plan that was found attains all goals"
         elif not self.found:
-            yield "no plan that was found attains all goals yet; what is open is settled first"
+            yield "what is planned so far does not attain all goals; what is open is settled first"
         for step in self.steps:
             yield step.line
             if step.number == 0:
@@ -234,7 +235,7 @@ def _plan(said: Mapping[str, list[tuple[str, ...]]]) -> StatedPlan:
         PlanRefutation(int(number), step, of("given", number))
         for step, number in sorted(said.get("refuted", ()), key=lambda row: int(row[1]))
     ]
-    cost, least, end = next(iter(said.get("price", ())), (None, None, "found"))
+    cost, least, end = next(iter(said.get("price", ())), (None, None, "found" if unmet else "proved"))
     if steps and cost == "0":  # no step takes nothing: geometry was not asked
         cost, least = None, None
     return StatedPlan(

@@ -14,6 +14,7 @@ from utak.kb.task.task import Task
 from utak.planner.agenda.choice import Activity, Agenda, StageEnd
 from utak.planner.agenda.own_goals import OwnGoals
 from utak.planner.carrying.open_facts import open_fact_against
+from utak.planner.carrying.remaining_plan import RemainingPlan
 from utak.planner.constraints import avoidances
 from utak.planner.deciding.clearing import ObstacleClearer
 from utak.planner.deciding.errands import ErrandRunner
@@ -32,7 +33,7 @@ from utak.planner.situation import Situation
 from utak.planner.step_rules import refusal
 from utak.planner.steps import steps_of
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
-from utak.planner.tasking.setting import waiting_goal
+from utak.planner.tasking.setting import place_name, waiting_goal
 from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
 
 # As what steps of a plan activities without one of that name are done, where there is no task plan.
@@ -68,7 +69,8 @@ class Activities:
             raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
-        self.bare = TaskPlan(())  # the step as which the newest command is given, where there is no task plan
+        self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
+        self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
@@ -98,7 +100,7 @@ class Activities:
             decision = _done_by_rules(decision, turn.situation)
             if decision.command is not None:
                 agenda.record()
-                self._note_step(found, turn)
+                self._note_step(found, decision, turn)
                 return decision
             agenda.note(found, decision)
             if decision.verdict not in (None, TaskVerdict.DONE):
@@ -107,19 +109,54 @@ class Activities:
         agenda.record()
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
 
-    def _note_step(self, activity: Activity, turn: StageTurn) -> None:
+    @property
+    def stated(self) -> TaskPlan:
+        """The task plan, where the newest command is one of its present step; else the step as which it is given."""
+        plan = self.errands.intention.followed
+        return plan if self._follows and plan is not None else self._bare
+
+    def _note_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> None:
         """Note as what step of a plan an activity is done."""
+        plan = self.errands.intention.followed
+        errands = () if plan is None else plan.errands
+        self._bare = self._as_step(activity, decision, turn)
+        self._follows = bool(errands) and (
+            activity.kind in ("errand", "wish")
+            or (activity.kind == "go" and errands[0].action == "arrive")
+            or errands[:1] == self._bare.errands
+            or (
+                not errands[0].settles and errands[0].place == _carried_to(activity, decision, errands[0].subject, turn)
+            )
+        )
+
+    def _as_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> TaskPlan:
+        """Return the step as which an activity is done that is none of the task plan, with the goals that it is for."""
         if activity.kind == "resume":
-            self.bare = self._begun.get(activity.subject) or TaskPlan((Errand(activity.subject, ALL_OBJECTS),))
-            return
+            return self._begun.get(activity.subject) or TaskPlan((Errand(activity.subject, ALL_OBJECTS),))
         errand = _ERRANDS.get(activity.kind) or Errand(activity.kind, activity.subject)
-        goals = [waiting_goal(name, goal) for name, goal in turn.goals.items() if name == errand.subject]
+        meant = [(name, goal) for name, goal in turn.goals.items() if name == errand.subject]
+        goals = [waiting_goal(name, goal) for name, goal in meant]
+        unmet = [name for name, goal in meant if not self._attains(decision, goal, turn)]
         if errand.subject == ROBOT_ITSELF and turn.stage.own:
-            own = " and ".join(map(str, turn.stage.own))
-            goals = [PlacedGoal(f"g{len(turn.goals) + 1}", own, ROBOT, False)]
-        self.bare = TaskPlan((errand,), tuple(goal.name for goal in goals), goals=tuple(goals))
+            name = f"g{len(turn.goals) + 1}"
+            goals = [PlacedGoal(name, " and ".join(map(str, turn.stage.own)), ROBOT, False)]
+            # The last step towards what is only looked at is the look.
+            unmet = [] if decision.steps and decision.steps[-1].startswith("go(") else [name]
+        bare = TaskPlan((errand,), tuple(unmet), goals=tuple(goals))
         if activity.kind in self._resumed:
-            self._begun[activity.kind] = self.bare
+            self._begun[activity.kind] = bare
+        return bare
+
+    def _attains(self, decision: Decision, goal: Fact, turn: StageTurn) -> bool:
+        """Return whether a goal for an object holds, or will hold where the steps of a decision leave that."""
+        node, situation = turn.situation.object_of(str(goal.args[0])), turn.situation
+        if node is None or node.polygon is None:
+            return False
+        plan = _under_way(decision, node.name, turn)
+        if plan is None:
+            return self.holds(situation)(goal)
+        land, outline = self.errands.intention.where.of(goal, node, situation), to_view_frame(plan.end, situation)
+        return meets_any_end(land.ends, outline) or meets_any_end(land.hoped.ends(), outline)
 
     def _facts(self, turn: StageTurn) -> Iterator[str]:
         """Yield the facts of a stage for the agenda, without full stops."""
@@ -225,6 +262,18 @@ class Activities:
             who = "the robot" if actor == ROBOT else actor
             return f"{who} went through {door.name}, which users' rules close"
         return self.keeper.doubt_of_done(situation)
+
+
+def _under_way(decision: Decision, name: str, turn: StageTurn) -> RemainingPlan | None:
+    """Return what is left of the plan with an object that a decision goes on with; None where it moves it by none."""
+    moves = any(step.startswith((f"push({name},", f"turn({name},")) for step in decision.steps)
+    return turn.executor.plan_of(name) if moves else None
+
+
+def _carried_to(activity: Activity, decision: Decision, name: str, turn: StageTurn) -> str:
+    """Return the place of the task plan to which an activity that pursues a goal carries an object; "" for none."""
+    plan = _under_way(decision, name, turn) if activity.kind == "pursue" else None
+    return "" if plan is None else place_name(activity.subject, plan.target)
 
 
 def _unknown(turn: StageTurn) -> Iterator[str]:

@@ -72,14 +72,9 @@ class Decider:
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
 
     @property
-    def plan(self) -> TaskPlan | None:
-        """The task plan under way, from its present step on; None while there is none."""
-        return self._intention.followed
-
-    @property
-    def bare_plan(self) -> TaskPlan:
-        """The step as which the newest command is given, where there is no task plan."""
-        return self._activities.bare
+    def plan(self) -> TaskPlan:
+        """The task plan under way, from its present step on; else the step as which the newest command is given."""
+        return self._activities.stated
 
     @property
     def attempt(self) -> TaskPlan | None:

@@ -15,6 +15,7 @@ from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
 from utak.planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
+from utak.planner.deciding.pursuit import end_of
 from utak.planner.deciding.search import contact_subgoals, subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
@@ -39,6 +40,7 @@ from utak.planner.screen.moves import next_move
 from utak.planner.sights.viewpoints import TO_REACH
 from utak.planner.skills.into_corner import IntoCorner, halt_beside_walls
 from utak.planner.stages import ORIGIN_GOALS, is_at_start
+from utak.planner.steps import towards
 from utak.planner.subgoal_kind import SubgoalKind
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.setting import DestinationFunction
@@ -214,7 +216,7 @@ class OwnGoals:
         turn.pursuer.keep_route(route, model)
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         move = next_move(cost_maps, route.squares, route.level, kind, off_centre=False)
-        return Decision(move, f"the way round {name}; {stage}")
+        return Decision(move, f"the way round {name}; {stage}", steps=towards(kind, end_of(route, model), model))
 
 
 def _turned(start: XY, end: XY, node: Node) -> float:

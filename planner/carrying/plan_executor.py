@@ -49,7 +49,7 @@ from utak.planner.steps import grasp, release
 MAX_CONTACTS, MAX_CONTACTS_INEXACT = 2, 4
 MAX_PLANS = 40  # plans in one task; a bound on time
 NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than rounding; a convention
-VIEWPOINT_TARGET = "sight"  # the end of a plan that brings an object near to where the robot wants to look
+VIEWPOINT_TARGET = "viewpoint"  # the end of a plan that brings an object near to where the robot wants to look
 # Squares by which an object is tried another way, if there is room: as wide as the widest field of the retina, so that
 # each field shows something else if it moved (derived).
 TOLD_DISTANCE = max(side for _, side in RETINA_ZONES)
@@ -89,6 +89,10 @@ class PlanExecutor:
         """Return whether what is left of the plan under way turns its object; False when there is no plan."""
         legs = () if self._plan is None else self._plan.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
+
+    def plan_of(self, name: str) -> RemainingPlan | None:
+        """Return what is left of the plan under way with an object; None for no such plan."""
+        return self._plan if self._plan is not None and self._plan.name == name else None
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
         """Return what to do to carry an object to one of several ends, or why nothing can be done."""
@@ -345,7 +349,8 @@ class PlanExecutor:
         self._pushed = motion if isinstance(motion, Translate) else None
         rest = replace(leg, motions=leg.motions[1:])
         self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
-        why = f"{plan.name} is carried to its place ({plan.target})"
+        moved = "pushed" if isinstance(motion, Translate) else "turned"
+        why = f"{plan.name} is {moved} on the way to its place ({plan.target})"
         return Act(command_of(motion, model), why, steps=plan.steps(model))
 
     def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
@@ -364,7 +369,9 @@ class PlanExecutor:
             next_ = "to be grasped from elsewhere" if model.held == plan.name else f"because {plan.name} is moved next"
             return Act(Release(), f"{model.held} is released, {next_}", steps=(release(model.held), *plan.steps(model)))
         if not there:
-            why = f"{plan.name} can be grasped from there"
+            x, y = leg.place
+            from_there = model.point_in_words((x - model.view.west, y - model.view.south))
+            why = f"{plan.name} can be grasped from {from_there}"
             return Go(square_index(leg.place, model), leg.place, why, plan.steps(model))
         if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]

@@ -95,12 +95,15 @@ class ObstacleClearer:
         return instead or nothing_to_do("nothing that stands before walls can be moved away")
 
     def blame(self, situation: Situation) -> Decision:
-        """Return the verdict `limit` with an object that blocks the robot's way still; nothing when there is none."""
+        """Return the verdict `limit` with the objects that block the robot's way still; nothing when there is none."""
         things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
-        blocking = next((one.node.name for one in obstacles(things, situation)), "")
+        blocking = [
+            f"{one.node.name} blocks the robot's way, and {_how_often_tried(one.node)}"
+            for one in obstacles(things, situation)
+        ]
         if not blocking:
             return nothing_to_do("no object blocks the robot's way")
-        return Decision(None, f"{blocking} blocks the robot's way, and was not moved aside", TaskVerdict.LIMIT)
+        return Decision(None, "; ".join(dict.fromkeys(blocking)), TaskVerdict.LIMIT)
 
     def _pull(self, turn: StageTurn) -> Decision | None:
         """Return the next command to move what may go on in a wall; None for no such thing."""
@@ -128,6 +131,16 @@ class ObstacleClearer:
                 self._moving, self._supposed = one.node.name, one.supposed
                 return instead
         return None
+
+
+def _how_often_tried(node: Node) -> str:
+    """Return in words in how many ways an object was moved in vain, last of all."""
+    ways = len(set(node.resisted))
+    return (
+        f"did not move in {ways} way{'s' * (ways > 1)} that {'were' if ways > 1 else 'was'} tried"
+        if ways
+        else "was not moved aside"
+    )
 
 
 def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision | None:

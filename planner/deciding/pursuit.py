@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from utak.geometry.kernels.arrays import Square
+from utak.geometry.kernels.arrays import XY, Square
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED
 from utak.kb.body import Command, Release
 from utak.kb.language.goal_words import ROBOT
@@ -52,7 +52,7 @@ class RefusedEnd(NamedTuple):
 
 
 class Pursuer:
-    """Walks after subgoals, and remembers the present route and the commands that led round in circles."""
+    """Walks after subgoals, and remembers the present route and the commands that led back to the same state."""
 
     def __init__(self, paths: str) -> None:
         """Make a pursuer that has no route yet."""
@@ -143,9 +143,7 @@ class Pursuer:
         kind = subgoal.kind if straight is not None or reached.level == 0 else SubgoalKind.PASS
         pace = WALKING_PACE if fewest is None else CARRYING_PACE
         move = next_move(cost_maps, route.squares, route.level, kind, pace)
-        column, row = route.squares[-1]
-        end = column + model.view.west + 0.5, row + model.view.south + 0.5
-        return Decision(move, f"{subgoal.what}; {stage}", steps=towards(subgoal.kind, end, model))
+        return Decision(move, f"{subgoal.what}; {stage}", steps=towards(subgoal.kind, end_of(route, model), model))
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""
@@ -177,6 +175,12 @@ class Pursuer:
     def _is_ruled(self, situation: Situation) -> bool:
         """Return whether rules of users speak of the links of walks."""
         return rules_reach(WALKS_ENCODING.stem, situation.rules)
+
+
+def end_of(route: PlannedRoute, model: WorldModel) -> XY:
+    """Return the middle of the last square of a route, (x, y) in squares, map frame."""
+    column, row = route.squares[-1]
+    return column + model.view.west + 0.5, row + model.view.south + 0.5
 
 
 def by_dearest_door(situation: Situation) -> list[tuple[int, Situation]]:
@@ -214,6 +218,7 @@ def _without(subgoal: Subgoal, refused: Sequence[RefusedEnd], model: WorldModel)
 
 def _given_up(stage: Stage, missing: str, proof: Sequence[str], in_circles: bool) -> Decision:
     """Return the verdict when no subgoal can be reached."""
-    end = "the robot goes round in circles" if in_circles else "nothing is left to look at"
+    vain = "what is left to look at was tried from the same place, knowing the same, and in vain"
+    end = vain if in_circles else "nothing is left to look at"
     why = f"{stage} cannot be attained: {missing}, and {end}"
     return impossible(why, *proof) if proof and not in_circles else Decision(None, why, TaskVerdict.LIMIT)

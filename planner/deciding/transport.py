@@ -391,7 +391,7 @@ def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = Fal
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone."""
     advice = turn.executor.take_along(node, subgoal.squares, fetch, turn.situation)
     if isinstance(advice, Go):
-        go = replace(advice, why=f"{node.name} is taken along: {subgoal.what}")
+        go = replace(advice, why=f"{node.name} is fetched, to be taken along: {subgoal.what}")
         return with_command(turn.go(go))
     return _push_to_see(advice, subgoal.what, turn)
 

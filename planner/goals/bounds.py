@@ -17,7 +17,7 @@ from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from utak.planner.goals.robot_goals import hidden_from
 from utak.planner.screen.projection import shift_mask
-from utak.planner.sights.frontiers import WHAT_IS_FELT, Viewpoint, viewpoint_of
+from utak.planner.sights.frontiers import WHAT_IS_FELT, Viewpoint, viewpoint_of, with_place
 from utak.planner.situation import Situation
 
 
@@ -82,7 +82,7 @@ def _felt_from(mask: Bools, situation: Situation) -> Viewpoint:
     floor = cost_maps.floor if model.held is None else model.space
     squares = np.flatnonzero(_touching(mask, model) & floor & ~cost_maps.looked_from)
     if len(squares) or model.told[mask].all():
-        return Viewpoint(squares, WHAT_IS_FELT)
+        return Viewpoint(squares, with_place(cost_maps, np.flatnonzero(mask), WHAT_IS_FELT))
     return viewpoint_of(cost_maps, mask, WHAT_IS_FELT)
 
 

@@ -32,7 +32,7 @@ MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view fo
 
 REFUSALS = {  # CarryingPlan.reason in words
     "body": "no way was found for it, even by itself",
-    "hold": "it could pass by itself, but no way was found for it with the robot",
+    "hold": "no way was found for it with the robot that holds it",
     "start": "it would overlap a wall where it lies",
     "goal": "there is no such end on the floor",
 }

@@ -73,7 +73,8 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely."""
     open_ = cost_maps.unsettled & dilate(cost_maps.floor, 1)
     near = np.where(unlooked_floor(cost_maps, apart), _grown_labels(_stretches(open_), FOVEA_RANGE), 0)
-    return [Viewpoint(squares, "what bounds the floor is not clear") for squares in group_by_label(near)]
+    what = "what bounds the floor is not clear"
+    return [Viewpoint(squares, with_place(cost_maps, squares, what)) for squares in group_by_label(near)]
 
 
 def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
@@ -85,7 +86,7 @@ def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
 def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     """Return the floor from which the robot feels whether something is part of a wall, and where not yet."""
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
-    return Viewpoint(beside, WHAT_IS_FELT)
+    return Viewpoint(beside, with_place(cost_maps, np.flatnonzero(mask), WHAT_IS_FELT))
 
 
 def elsewhere_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
@@ -117,11 +118,20 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
 def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     """Return the floor from which some squares are seen best, where the robot did not look yet."""
     # It is reachable floor within the range of the fovea of any of them, or else of the middle zone.
+    what = with_place(cost_maps, np.flatnonzero(mask), what)
     for reach, apart in ((FOVEA_RANGE, VIEW_SPACING), (FOVEA_RANGE, 0), (MIDDLE_ZONE_RANGE, VIEW_SPACING)):
         near = np.flatnonzero(unlooked_floor(cost_maps, apart) & dilate(mask, reach))
         if len(near):
             return Viewpoint(near, what)
     return Viewpoint(np.zeros(0, np.int64), what)
+
+
+def with_place(cost_maps: CostMaps, squares: SquareIndices, what: str) -> str:
+    """Return what is not known, in words, with about where it is."""
+    if not len(squares):
+        return what
+    rows, columns = np.divmod(squares, cost_maps.floor.shape[1])
+    return f"{what}, near {cost_maps.model.point_in_words((columns.mean() + 0.5, rows.mean() + 0.5))}"
 
 
 def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:

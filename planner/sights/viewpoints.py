@@ -65,7 +65,7 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
     """Return the floor from which an object is seen better than it was."""
     squares = inspection_squares(cost_maps, cost_maps.model.mask(node.patch), chance, to)
-    return Viewpoint(squares, f"it is not clear what {node.name} is")
+    return Viewpoint(squares, f"it is not clear what {node.name} is, or how far it goes")
 
 
 def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> SquareIndices:

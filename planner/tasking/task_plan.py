@@ -107,7 +107,7 @@ class TaskPlan:
     # found
     proved: bool = True
     refutations: tuple[RefutedStep, ...] = ()  # the steps that geometry refuted on the way to it
-    rounds: int = 0  # how many plans were made
+    rounds: int = 0  # how many plans were made; 0 where none was sought, and the one step is what is done next
     # The goals of the stage, in the order of the task, as they were when it was made
     goals: tuple[PlacedGoal, ...] = ()
     missed: tuple[str, ...] = ()  # the wishes that do not hold at its end
@@ -152,7 +152,7 @@ class TaskPlan:
 
     def _search_facts(self) -> Iterator[str]:
         """Yield what the plan costs if it attains all goals, how the search ended, and what was refuted on its way."""
-        if not self.unmet:
+        if self.rounds and not self.unmet:
             yield f"price({self.cost},{self.least},{'proved' if self.proved else 'found'})"
         yield from self._refutation_facts()
 

@@ -186,9 +186,14 @@ def test_a_neck_beside_a_thing_in_a_doorway_is_not_that_door() -> None:
 
 def test_of_a_corner_that_looks_along_the_grid_either_square_is_the_inner_one() -> None:
     found = moment(HERE, "corner(northeast,0,0,50)")
-    truth = SimpleNamespace(heading=45, utak=(5, 5), seems=lambda square, occupied: occupied == (square != (4, 4)))
+    truth = SimpleNamespace(
+        heading=45,
+        utak=(5, 5),
+        seems=lambda square, occupied: occupied == (square != (4, 4)),
+        is_floor=lambda square: square == (4, 4),
+    )
     assert verdicts(found._replace(truth=truth)) == {"corner(northeast,0,0,50)": True}
-    solid = SimpleNamespace(**{**vars(truth), "seems": lambda square, occupied: occupied})
+    solid = SimpleNamespace(**{**vars(truth), "seems": lambda _, occupied: occupied, "is_floor": lambda _: False})
     assert verdicts(found._replace(truth=solid)) == {"corner(northeast,0,0,50)": False}
 
 

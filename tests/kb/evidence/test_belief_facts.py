@@ -58,7 +58,9 @@ def test_what_is_believed_and_not_known_is_told_apart_from_what_is_not_believed(
         if name in PLACES and declared.short and arguments[-1] != "100":
             not_known = questions.why_not(f"{name}({','.join(arguments[:-1])})", last)
             assert fact in not_known.because and fact in claims(not_known)
-    for asked in ("door(d99)", "in(o1, r99)", "adjacent(o1, o99)", "corner(northeast, 1, 1)", "region(part999, zero)"):
+    for asked, named in (("door(d99)", "door d99"), ("in(o1, r99)", "room r99"), ("adjacent(o1, o99)", "object o99")):
+        assert questions.why_not(asked, last).because.startswith(f"no {named} is believed to be there")
+    for asked in ("corner(northeast, 1, 1)", "region(part999, zero)"):
         found = questions.why_not(asked, last)
         assert found.claim.startswith("not ") and "is not believed" in found.because and found.rests_on
     for asked in ("width(d1, 1, 2)", "part_of(part1, verge)"):

@@ -16,7 +16,7 @@ from utak.kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
 from utak.kb.explanation.values import ProofNode
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.diagnostics import BadInputError
-from utak.kb.language.vocabulary import SETTLING_STEPS
+from utak.kb.language.vocabulary import SETTLING_WORDS
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.questions import Questions, questions_of_episode
@@ -273,7 +273,7 @@ def test_what_is_said_of_things_in_hand_rooms_and_plans_is_so(run: tuple[Questio
             elif name == "borders":
                 assert [atom_parts(claim)[0] for claim in below] == ["link", "rect"]
             elif name == "plan":
-                settles = arguments[1].partition("(")[0] in SETTLING_STEPS
+                settles = arguments[1].partition("(")[0] in SETTLING_WORDS
                 assert settles != (" geometry " in why.because)
             elif name == "serves":
                 assert why.because == f"step {arguments[0]} of the plan is for goal {arguments[1]}"

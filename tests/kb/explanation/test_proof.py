@@ -117,6 +117,11 @@ def test_a_conditional_literal_shows_all_its_cases() -> None:
     assert node.words == "behind(o1,K) holds in 2 cases, and in each 1 <= K"
 
 
+def test_a_conditional_literal_without_a_case_says_that_nothing_had_to_hold() -> None:
+    root = explain_decision("walks", ["tight(0,300,0,0)"], ["walked(0)"], "walked(0)").root
+    assert "there is no part(0,L), so nothing had to hold" in {node.words for node in nodes(root)}
+
+
 def test_a_greatest_value_shows_what_it_is_the_greatest_of() -> None:
     facts = "convex(1,0,0). convex(2,100,50). convex(3,50,50)."
     (decision,) = best_decisions(encoding_path("corners"), facts)

@@ -37,9 +37,9 @@ class Undecided:
     task = Task({}, (), ())
     bound: Mapping[str, str] = {}
     corners: Mapping[str, Corner] = {}
-    plan = attempt = None
+    attempt = None
     alternatives: tuple[str, ...] = ()
-    bare_plan = TaskPlan((Errand("pursue", "robot"),))
+    plan = TaskPlan((Errand("pursue", "robot"),))
 
     def __init__(self) -> None:
         self.asked: list[bool] = []

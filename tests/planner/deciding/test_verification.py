@@ -153,7 +153,7 @@ def test_nothing_is_done_while_the_last_impression_contradicts_what_is_believed(
     assert (decision.verdict == "done") == (not contradicted)
     if contradicted:
         assert isinstance(decision.command, Move)
-        assert decision.why == "what is seen differs from what is believed; at(utak,start)"
+        assert decision.why.startswith("what is seen differs from what is believed, near POINT (")
         assert decider.decide(replace(model, contradicted=False), [model.place]).verdict == "done"
 
 

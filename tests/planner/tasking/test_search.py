@@ -274,4 +274,4 @@ def test_a_plan_about_nothing_is_not_stated() -> None:
     """Users' rules have a plan sought while it is not known where any goal holds: then there is none to follow."""
     assert TaskPlan(()).facts == ()
     assert TaskPlan((), unmet=("apart",)).facts[0] == "unmet(apart)"
-    assert "price(0,0,proved)" in TaskPlan((), goals=(PlacedGoal("g1", "at(x,start)", "g", False),)).facts
+    assert "price(0,0,proved)" in TaskPlan((), rounds=1, goals=(PlacedGoal("g1", "at(x,start)", "g", False),)).facts
