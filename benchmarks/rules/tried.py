@@ -17,7 +17,8 @@ class Tried:
     kept : whether the rule was kept, by what truly happened; None for a rule that is to be refused.
     examples : the scenarios in which it is tried.
     refused : what the message of the refusal says; "" for a rule that counts.
-    said : what the verdict's reason says in place of the rule's name, where the rule is about what is believed.
+    said : what the verdict's reason may say in place of the rule's name, where the rule is about what is believed; ""
+        where it must name the rule.
     """
 
     kind: str
