@@ -134,7 +134,7 @@ TRIED_RULES: dict[str, Tried] = {
     ),
     "stay_in_room": Tried(
         "world facts",
-        ":- occurs(carry(X, P), T), in(X, R), lies(X, P, S), R != S.",
+        ":- occurs(carry(X, P), T), in(X, R, C), C > 50, lies(X, P, S), R != S.",
         lambda t: not any(t.passes(name) for name in t.things),
         CARRIES,
     ),

@@ -193,7 +193,7 @@ class PlanExecutor:
 
     def lead_out(self, node: Node, situation: Situation) -> Act | None:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed."""
-        push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
+        push = escape_push(node, situation) if self.pull and self._plans < MAX_PLANS else None
         if push is None:
             return None
         self.failed.record(node, situation.model)
