@@ -108,14 +108,12 @@ TRIED_RULES: dict[str, Tried] = {
         "shape(N, square, 1) :- fit(N, square, _, _).",
         lambda t: not t.ends_east("g1"),
         CARRIES,
-        said="nothing seen so far is x",
     ),
     "red_are_squares": Tried(
         "meanings",
         "has(N, shape, square, 99) :- has(N, colour, r, _). has(N, shape, square, 1) :- has(N, colour, K, _), K != r.",
         lambda t: not t.ends_east("g1"),  # it may be moved to measure it: it might be y
         CARRIES,
-        said="nothing seen so far is y",
     ),
     "x_is_not_large": Tried(
         "meanings", ":- meaning(x, X), size(X, S), S > 8.", lambda t: "g1" not in t.moved(), CARRIES
