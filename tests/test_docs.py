@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +51,18 @@ def test_modules_and_files_that_a_page_names_exist(page: Path) -> None:
     for path in re.findall(rf"(?<![\w/.])((?:{PACKAGES}|tests|docs|examples|\.ci)/[\w/.-]*[\w/])", text):
         is_environment = path.startswith("utak/Tabletop-v")  # a name that Gymnasium knows, not a file
         assert is_environment or (ROOT / path).exists() or (page.parent / path).exists(), path
+
+
+def test_what_is_to_be_installed_is_there() -> None:
+    """Utak is in no registry: it is installed from a checkout, with its extras, and other packages by their names."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = set(project["optional-dependencies"])
+    texts = [*WRITTEN, *(path for package in PACKAGES.split("|") for path in (ROOT / package).rglob("*.py"))]
+    found = [one for path in texts for one in re.findall(r"pip install ([^`\n]*)", path.read_text(encoding="utf-8"))]
+    assert any("-e " in one for one in found)
+    for one in found:
+        assert "utak" not in one.split("&&")[0].casefold(), one
+        assert set(re.findall(r"\.\[(\w+)\]", one)) <= extras, one
 
 
 def known(dotted: str) -> bool:

@@ -78,7 +78,8 @@ def tried(name: str, example: str) -> RuleRow:
         track = TrueTrack([line for line in lines if "step" in line], WALL_AT[example])
         unattained = rule.kind == "end states" and result.verdict != "done"  # a rule on an end that is not claimed
         kept = unattained or (rule.kept is not None and rule.kept(track))
-        named, idle = (rule.said or str(path)) in result.reason, any(str(path) in one for one in result.idle_rules)
+        named = str(path) in result.reason or (bool(rule.said) and rule.said in result.reason)
+        idle = any(str(path) in one for one in result.idle_rules)
         return RuleRow(name, rule.kind, example, result.verdict, kept, named, idle, result.reason)
 
 

@@ -10,6 +10,7 @@ have row 0 in the south, so rows are reversed.
 
 import re
 from codecs import BOM_UTF8
+from itertools import islice
 
 import numpy as np
 
@@ -71,7 +72,7 @@ def _header(lines: list[str]) -> tuple[int, int, int]:
     """Return the number of lines before the first row ("map" included), the height and the width in squares."""
     found: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
-        words = list(HEADER_WORD.finditer(line))
+        words = list(islice(HEADER_WORD.finditer(line), 3))  # a name, a value, and what is one too many
         if [word.group() for word in words] == ["map"]:
             for name in HEADER_FIELDS[1:]:
                 if name not in found:
@@ -85,7 +86,7 @@ def _header(lines: list[str]) -> tuple[int, int, int]:
             raise MapError(number, words[0].start() + 1, f"{name} is given twice", words[0].end())
         if len(words) != 2:
             at = words[2].start() + 1 if len(words) > 2 else len(line)
-            raise MapError(number, at, f"one word was expected after {name}, not {len(words) - 1}", len(line))
+            raise MapError(number, at, f"one word was expected after {name}", len(line))
         found[name] = 0 if name == "type" else _number(number, name, words[1])
     raise MapError(len(lines), 1, "a line that says 'map' is missing")
 

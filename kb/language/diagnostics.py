@@ -90,6 +90,6 @@ def _on_one_line(name: str) -> str:
 
 def _window(source: str, start: int) -> tuple[str, int]:
     """Return the part of a long line around column `start` (from 1), and how many characters were cut on its left."""
-    clean = "".join(c if " " <= c <= "~" else " " if c == "\t" else "?" for c in source)
-    left = 0 if len(clean) <= MAX_SOURCE_LINE_WIDTH else max(0, start - 1 - MAX_SOURCE_LINE_WIDTH // 3)
-    return clean[left : left + MAX_SOURCE_LINE_WIDTH], left
+    left = 0 if len(source) <= MAX_SOURCE_LINE_WIDTH else max(0, start - 1 - MAX_SOURCE_LINE_WIDTH // 3)
+    shown = source[left : left + MAX_SOURCE_LINE_WIDTH]
+    return "".join(c if " " <= c <= "~" else " " if c == "\t" else "?" for c in shown), left

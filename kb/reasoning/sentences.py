@@ -15,13 +15,13 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from utak.kb.language.diagnostics import Problem, SourceSpan, did_you_mean
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, Problem, SourceSpan, did_you_mean
 from utak.kb.language.source_text import Source
 from utak.kb.language.tokens import Token, tokenize
 
 ANNOTATION_MARK = "%!"  # begins a comment that is an annotation
 PLACEHOLDER = re.compile(r"\{(_*[A-Z][A-Za-z0-9_']*)(?:/(100?))?\}")  # a variable, and by what it is divided
-STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+STRING = re.compile(r'"(?:[^"\\]|\\.)*("?)')  # with its last quote, or up to the end where none closes it
 PREDICATE_FORM = re.compile(r"(_*[a-z][A-Za-z0-9_']*)(?:\(([^()]*)\))?")
 ONE_OF_SEVERAL = re.compile(r"(?<![\w.-])1 (square|field|command|impression|parameter|errand)s\b")  # a plural after 1
 Place = tuple[int, int]  # line and column, from 1
@@ -160,30 +160,34 @@ class _SentenceReader:
 
     def _strings(self, one: _Annotation, begin: int) -> tuple[list[tuple[str, int]], str]:
         """Return the strings of an annotation from a character on, each with its index; and what stands beside them."""
-        found: list[tuple[str, int]] = []
+        found: list[tuple[list[str], int]] = []
         rest, at = "", begin
         for match in STRING.finditer(one.text, begin):
+            if not match[1]:
+                break
             between = one.text[at : match.start()]
             text = re.sub(r"\\(.)", r"\1", match.group()[1:-1])
             if found and not between.strip():
-                found[-1] = (found[-1][0] + text, found[-1][1])
+                found[-1][0].append(text)
             else:
                 rest += between
-                found.append((text, match.start()))
+                found.append(([text], match.start()))
             at = match.end()
-        return found, rest + one.text[at:]
+        return [("".join(texts), start) for texts, start in found], rest + one.text[at:]
 
     def _unclosed(self, one: _Annotation) -> bool:
         """Return whether an annotation has a quote that is not closed, after appending the problem."""
-        left = STRING.sub(lambda match: " " * len(match.group()), one.text)
-        if '"' not in left:
+        quote = next((match.start() for match in STRING.finditer(one.text) if not match[1]), None)
+        if quote is None:
             return False
-        self.complain(self._place(one, left.index('"'), 1), "this quote is not closed", 'close it with "')
+        self.complain(self._place(one, quote, 1), "this quote is not closed", 'close it with "')
         return True
 
     def _check_placeholders(self, one: _Annotation, text: str, at: int, names: set[str], unknown: str) -> None:
         """Append a problem for each placeholder of a text that is not among `names`, and for each other brace."""
         for match in PLACEHOLDER.finditer(text):
+            if len(self.problems) >= MAX_PROBLEMS_PER_FILE:
+                return
             if match[1] not in names:
                 span = self._place(one, max(0, one.text.find(match.group(), at)), len(match.group()))
                 self.complain(span, unknown.format(match[1]), did_you_mean(match[1], names))

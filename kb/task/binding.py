@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 from utak.kb.objects.proportions import possible_rectangle_shapes
 from utak.kb.reasoning.encodings import KB_ENCODINGS
+from utak.kb.reasoning.rulebook import RuleAtom
 from utak.kb.reasoning.solver import solve
-from utak.kb.reasoning.user_rules import rules_reach, rules_to_blame
+from utak.kb.reasoning.user_rules import read_rules, rules_reach, rules_to_blame
 from utak.kb.task.described import claim_facts
 from utak.kb.task.task import Task
 from utak.kb.world.model import Node, WorldModel
@@ -84,6 +85,22 @@ def reconcile(
 def rules_that_deny(parameter: str, reconciled: Reconciliation, rules: tuple[Path, ...]) -> str:
     """Return the places of the users' rules without which a parameter would mean something; "" for none."""
     return " and ".join(rules_to_blame(RECONCILIATION, rules, reconciled.facts, partial(_is_unbound, parameter)))
+
+
+def rules_on_what_fits(parameter: str, task: Task, rules: tuple[Path, ...]) -> str:
+    """Return the places of the users' rules that state kinds, or a shape claimed of a parameter; "" for none."""
+    claims = [claim.fact for claim in task.claims if claim.fact.name == "shape"]
+    shapes = [str(fact.args[1]) for fact in claims if str(fact.args[0]) == parameter]
+
+    def decides(atom: RuleAtom) -> bool:
+        """Return whether a stated atom may decide what fits."""
+        return atom.signature == ("kind", 3) or (
+            atom.signature == ("shape", 3) and atom.constants[1] in (None, *shapes)
+        )
+
+    stating = read_rules(rules).statements if rules else ()
+    places = [one.line for one in stating if one.declares is None and any(map(decides, one.heads))]
+    return " and ".join(dict.fromkeys(places))
 
 
 def _is_unbound(parameter: str, atoms: Sequence[Any]) -> bool:

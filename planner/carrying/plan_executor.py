@@ -77,6 +77,7 @@ class PlanExecutor:
         # Asked for ways to a viewpoint: one that finds nothing there shall not change the order of questions elsewhere.
         self._viewpoint_oracle = ManipulationOracle(pull)
         self._plan = plan
+        self._asked = ""  # the object for which the plan under way was made: the one it carries, or whose way it clears
         self._viewpoint_plan: RemainingPlan | None = None  # to bring an object near to where the robot wants to look
         self._operations = operations or PlanOperations()
         self._plans = 0  # how many were made
@@ -110,8 +111,9 @@ class PlanExecutor:
         """Return the same; other_way: whether the ends are those another way, for which it may stay in hand."""
         before, self._plan = self._plan, None
         plan = None
-        if before is not None and before.name != node.name and before.target in ends:
-            before = None  # it brought another object to an end that is meant for this one now
+        if before is not None and node.name not in (before.name, self._asked):
+            before = None  # it brought another object somewhere, and cleared no way for this one
+        self._asked = node.name
         if before is not None:
             plan = self._operations.revalidate(before, ends if before.name == node.name else None, situation)
         if plan is None:
@@ -195,7 +197,7 @@ class PlanExecutor:
 
     def lead_out(self, node: Node, situation: Situation) -> Act | None:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed."""
-        push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
+        push = escape_push(node, situation) if self.pull and self._plans < MAX_PLANS else None
         if push is None:
             return None
         self.failed.record(node, situation.model)

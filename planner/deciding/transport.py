@@ -15,7 +15,7 @@ from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import At, End, Inside
 from utak.kb.body import Grasp, Move, Push, Release, Turn
 from utak.kb.language.terms import Fact
-from utak.kb.task.binding import rules_that_deny
+from utak.kb.task.binding import rules_on_what_fits, rules_that_deny
 from utak.kb.world.model import Node
 from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.infeasibility import Infeasibility
@@ -182,11 +182,14 @@ class Transporter:
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else turn.situation.nothing_is(x))
         goals = [goal for goal in turn.stage.goals if str(goal.args[0]) == x]
         subgoals = self.search([unseen], turn.situation, turn.reconciled, approach_for_goals(goals, turn.situation))
-        proof = proof_if_not_found(turn.situation.model, bool(immovable))
+        stating = rules_on_what_fits(x, turn.situation.task, turn.situation.rules)
+        proof = () if stating else proof_if_not_found(turn.situation.model, bool(immovable))
 
         def missing() -> str:
-            """Return in words what is missing, with users' rules because of which nothing is meant."""
+            """Return in words what is missing, with users' rules because of which nothing may be meant."""
             denying = "" if immovable else rules_that_deny(x, turn.reconciled, turn.situation.rules)
+            if stating and not denying:
+                return f"{unseen.missing}, and what things are is said by the rule at {stating}"
             return unseen.missing + (f", by the rule at {denying}" if denying else "")
 
         decision = turn.feel_before_verdict(partial(turn.seek, subgoals, missing, proof))

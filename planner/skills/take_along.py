@@ -17,6 +17,8 @@ from utak.geometry.motion.first_contact import ContactBody
 from utak.geometry.motion.se2 import Translate
 from utak.geometry.raster.components import components
 from utak.geometry.raster.runs import mask_to_polygon
+from utak.kb.body import Push
+from utak.kb.objects.movability import way_of
 from utak.kb.world.model import Node
 from utak.planner.goals.placement import floor_leads_away, forbidden_squares, meets_any_end, to_view_frame
 from utak.planner.screen.moves import CARRYING_PACE
@@ -79,6 +81,7 @@ def detour_push(
 
 def escape_push(node: Node, situation: Situation) -> Translate | None:
     """Return the shortest push, by whole squares, after which the held object does not shut the robot in."""
+    # No push leads a way in which the object did not move.
     model = situation.model
     x, y = model.place_on_view
     steps = np.array([step for step in product(range(-MAX_ESCAPE, MAX_ESCAPE + 1), repeat=2) if any(step)])
@@ -86,6 +89,8 @@ def escape_push(node: Node, situation: Situation) -> Translate | None:
     covered, workspace = model.mask(node.patch), _workspace(node, situation)
     free = workspace.far(ContactBody(to_view_frame(node.polygon, situation), [(x, y)]), steps.astype(float))
     for dx, dy in steps[free].tolist():
+        if way_of(Push(*model.frame.to_utak(dx, dy))) in node.resisted:
+            continue
         here = math.floor(y) + dy, math.floor(x) + dx
         moved = np.roll(covered, (dy, dx), (0, 1))
         left = workspace.free & ~moved

@@ -14,8 +14,8 @@ import numpy.typing as npt
 import shapely
 from svg.path import Arc, Close, CubicBezier, Move, QuadraticBezier, parse_path
 
-from utak.kb.language.source_text import Source
-from utak.simulator.importing.xml_tree import XmlElement, xml_error
+from utak.kb.language.source_text import MAX_FILE_BYTES, Source
+from utak.simulator.importing.xml_tree import MAX_XML_DEPTH, XmlElement, xml_error
 
 SVG_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 LENGTH = re.compile(rf"({SVG_NUMBER.pattern})(px|mm|cm|in|pt|pc|%|)")
@@ -28,6 +28,9 @@ SHAPE_TAGS = ("path", "rect", "circle", "ellipse", "polygon", "polyline")
 MAX_CHORDS = 256  # chords for one curve; a convention
 MAX_PATH_CHARACTERS = 200_000  # characters of all path data of a picture: seconds of reading; a convention
 MAX_DRAWN_ELEMENTS = 20_000  # elements that are drawn, again where they are used again; a convention
+# Characters of the attributes of drawn elements, again where they are used again; derived: a file without `use` has no
+# more.
+MAX_DRAWN_CHARACTERS = MAX_FILE_BYTES
 MAX_PATH_PARTS = 200  # closed parts of one path; a convention
 MAX_DRAWN_POINTS = 1_000_000  # points of all outlines, which arcs make of few letters; a convention
 MAX_UNITS = 1e9  # user units of a coordinate, and how much transforms stretch, in absolute value; a convention
@@ -80,6 +83,7 @@ class _Context:
     ids: frozenset[str] = frozenset()
     even_odd: bool = False
     visible: bool = True
+    depth: int = 0  # elements around it, also those that use it
 
 
 class SvgPicture:
@@ -96,12 +100,18 @@ class SvgPicture:
     def shapes(self, tolerance: float) -> Iterator[DrawnShape]:
         """Yield the drawn elements with an outline, in the order of the picture; chords lie near curves."""
         # tolerance : units of the target.
-        waiting, visits = [(self._root, self._first)], 0
+        waiting, visits, characters = [(self._root, self._first)], 0, 0
         while waiting:
             element, context = waiting.pop()
             visits += 1
-            if visits > MAX_DRAWN_ELEMENTS:
-                raise xml_error(self._source, element, "", f"more than {MAX_DRAWN_ELEMENTS} elements are drawn")
+            characters += sum(map(len, element.attributes.values()))
+            for count, most, what in (
+                (visits, MAX_DRAWN_ELEMENTS, "elements are drawn"),
+                (characters, MAX_DRAWN_CHARACTERS, "characters of attributes are drawn"),
+                (context.depth, MAX_XML_DEPTH, "elements are drawn within each other"),
+            ):
+                if count > most:
+                    raise xml_error(self._source, element, "", f"more than {most} {what}")
             properties = properties_of(element)
             self.notes |= {NOTED[name] for name in (f"<{element.tag}>", *properties) if name in NOTED}
             if element.tag in SKIPPED_TAGS or properties.get("display") == "none":
@@ -135,6 +145,7 @@ class SvgPicture:
             ids=around.ids | ({properties["id"]} if "id" in properties else set()),
             even_odd=properties["fill-rule"] == "evenodd" if "fill-rule" in properties else around.even_odd,
             visible=properties["visibility"] == "visible" if "visibility" in properties else around.visible,
+            depth=around.depth + 1,
         )
 
     def _used(self, use: XmlElement) -> list[XmlElement]:
@@ -173,10 +184,13 @@ def properties_of(element: XmlElement) -> dict[str, str]:
 
 def parse_transform(text: str) -> Matrix:
     """Return the map that a list of transforms describes; lengths in px, angles in degrees."""
-    whole, rest = np.eye(3), TRANSFORM.sub("", text).strip()
-    if rest not in ("", "none"):
-        raise SvgError("transform", f"{rest[:20]!r} is no transform")
-    for name, words in TRANSFORM.findall(text):
+    text = "" if text.strip() == "none" else text.strip()
+    whole, end = np.eye(3), 0
+    while end < len(text):
+        found = TRANSFORM.match(text, end)  # a search would look for a bracket behind each letter of a long word
+        if found is None:
+            raise SvgError("transform", f"{text[end : end + 20]!r} is no transform")
+        end, (name, words) = found.end(), found.groups()
         numbers = [word.removesuffix("px").removesuffix("deg") for word in SEPARATOR.split(words.strip())]
         if not all(map(SVG_NUMBER.fullmatch, numbers)):
             raise SvgError("transform", f"the transform {name[:20]} needs numbers")

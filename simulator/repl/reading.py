@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
+from utak.simulator.episode.output_files import replace_whole
 from utak.simulator.repl.completion import CompletionWord
 from utak.simulator.terminal.streams import StreamError
 
@@ -167,12 +168,12 @@ class History:
 
     def read(self) -> list[str]:
         """Return the newest statements, the oldest first; [] when they cannot be read. A long file is cut."""
+        lines: list[str] = []
         with suppress(OSError):
             lines = self._path.read_text(encoding="utf-8", errors="replace").splitlines()
             if len(lines) > 2 * MAX_HISTORY_LINES:
-                self._path.write_text("\n".join(lines[-MAX_HISTORY_LINES:]) + "\n", encoding="utf-8")
-            return lines[-MAX_HISTORY_LINES:]
-        return []
+                replace_whole(self._path, "".join(f"{line}\n" for line in lines[-MAX_HISTORY_LINES:]).encode("utf-8"))
+        return lines[-MAX_HISTORY_LINES:]
 
     def append(self, statement: str) -> None:
         """Remember a statement in one line; nothing happens when that fails."""

@@ -1,6 +1,7 @@
 """The sentences of the shipped encodings: every rule has one, and every predicate reads in two ways."""
 
 import re
+import time
 from pathlib import Path
 
 import clingo
@@ -11,11 +12,13 @@ from hypothesis import strategies as st
 
 from tests.encoding_cases import ENCODINGS, ROOT, statements
 from utak.kb.explanation.programs import decision_program, encoding_names
+from utak.kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, format_problems
 from utak.kb.language.source_text import source_from_bytes
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.kb.reasoning.encodings import encoding_files
 from utak.kb.reasoning.sentences import fill, placeholders, read_sentences
 
+GIVEN_UP = 30.0  # seconds of processor time: many times what linear reading takes, far less than quadratic one
 NAMES = [encoding.stem for encoding in ENCODINGS]
 
 
@@ -110,3 +113,19 @@ def test_whatever_stands_in_annotations_is_read_or_located(text: str) -> None:
     for problem in problems:
         assert 1 <= problem.span.line <= len(source.lines) and 1 <= problem.span.start <= problem.span.end
         assert problem.span.start <= len(source.lines[problem.span.line - 1]) + 1
+
+
+@pytest.mark.parametrize(
+    ("text", "problems"),
+    [
+        ('%! because "' + '\\"' * 300_000, 1),  # a quote that nothing closes, with a quote in each place within
+        ('%! because "' + "".join(f"{{A{n}}}" for n in range(100_000)) + '"', MAX_PROBLEMS_PER_FILE),
+    ],
+)
+def test_the_time_to_read_annotations_grows_linearly(text: str, problems: int) -> None:
+    source = source_from_bytes("some.lp", f"{text}\np(X).".encode())
+    began = time.process_time()
+    _, found = read_sentences(source, [((2, 1), ["X"])])
+    assert len(found) == problems
+    assert len(format_problems(found)) < 100_000
+    assert time.process_time() - began < GIVEN_UP

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.kb.drawings import known_model
 from utak.kb.language.diagnostics import SourceSpan
 from utak.kb.language.terms import Symbol
-from utak.kb.task.binding import reconcile, rules_that_deny
+from utak.kb.task.binding import reconcile, rules_on_what_fits, rules_that_deny
 from utak.kb.task.task import Claim, Parameter, Task
 from utak.kb.world.model import Node
 
@@ -157,3 +157,16 @@ def test_the_rule_is_named_without_which_a_parameter_would_mean_something(tmp_pa
         found = reconcile(wanted, replace(MODEL, objects=objects), {"o1": 1}, {}, rules, ["x"])
         assert (found.binding, rules_that_deny("x", found, rules)) == ({}, denying)
         assert rules_that_deny("x", found, ()) == ""
+
+
+def test_rules_that_say_what_things_are_are_named_where_that_decides_what_fits(tmp_path: Path) -> None:
+    rules, wanted = (tmp_path / "mine.lp",), task({"x": [("shape", "square", 100)], "y": [("shape", "disc", 100)]})
+    rules[0].write_text(
+        "shape(N, square, 1) :- fit(N, square, _, _).\n"
+        "shape(N, brick, 99) :- fit(N, brick, _, _).\n"
+        "kind(P, verge, 99) :- extent(P, E), E > 30.\n"
+        ":- brought(X, _, _, _), shape(X, disc, C), C > 5.\n"
+    )
+    assert rules_on_what_fits("x", wanted, rules) == f"{rules[0]}:1 and {rules[0]}:3"
+    assert rules_on_what_fits("y", wanted, rules) == f"{rules[0]}:3"
+    assert rules_on_what_fits("x", wanted, ()) == ""

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from tests.planner.situations import all_felt, known_situation
 from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET, POCKET_GOAL, pose
 from utak.geometry.manipulation.goals import At
@@ -63,9 +65,11 @@ def test_all_that_may_be_meant_is_tried_before_a_verdict() -> None:
     assert f"x may be {'h' if bound == 'g' else 'g'} as well, and that was no better" in decision.why
 
 
-def test_a_plan_under_way_for_another_thing_is_dropped_when_the_same_end_is_meant_for_this_one() -> None:
+@pytest.mark.parametrize("second", ["there", "elsewhere"])
+def test_a_plan_under_way_for_another_thing_is_dropped_when_this_one_is_meant(second: str) -> None:
+    """The end of the plan may be meant for both, or for the other thing alone."""
     situation, executor = known_situation(ACROSS), PlanExecutor()
     one, other = situation.model.objects
-    for node in (one, other):
-        advice = executor.advise(node, {"there": At(Pose(0.0, -1.0, 0.0))}, situation)
+    for node, end in ((one, "there"), (other, second)):
+        advice = executor.advise(node, {end: At(Pose(0.0, -1.0, 0.0))}, situation)
         assert isinstance(advice, Act | Go) and advice.why.startswith(node.name)

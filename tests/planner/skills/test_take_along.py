@@ -16,9 +16,10 @@ from utak.geometry.manipulation.goals import Inside
 from utak.geometry.manipulation.plan_carrying import Leg
 from utak.geometry.manipulation.workspace import Workspace
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
-from utak.kb.body import Grasp, Move, Push, Release
+from utak.kb.body import DIRECTIONS, Grasp, Move, Push, Release
 from utak.kb.language.reader import facts_from_text
 from utak.kb.mapping.patch import Patch
+from utak.kb.objects.movability import way_of
 from utak.kb.world.model import Node
 from utak.planner.advice import Act, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
@@ -204,13 +205,18 @@ def test_no_push_leads_out_where_there_is_no_room() -> None:
     assert escape_push(node, situation) is None
 
 
-def test_an_object_that_did_not_move_is_not_led_out_again() -> None:
+def test_an_object_that_did_not_move_one_way_is_led_out_another_way() -> None:
+    """What is pressed against a wall does not move that way, and shuts the robot in all the same."""
     situation, node = in_a_nook([*NOOK, *["b" + "." * 14 + "b"] * 6, "b" * 16])
     executor = PlanExecutor(pull=True)
-    led = executor.lead_out(node, situation)
+    led = executor.lead_out(replace(node, resisted=("north",)), situation)
     assert led is not None
-    assert isinstance(led.command, Push)
-    assert executor.lead_out(replace(node, resisted=("north",) * 1), situation) is None
+    assert led.command == Push(-1.0, 0.0)
+    otherwise = executor.lead_out(replace(node, resisted=("west",)), situation)
+    assert otherwise is not None
+    assert isinstance(otherwise.command, Push)
+    assert way_of(otherwise.command) != "west"
+    assert executor.lead_out(replace(node, resisted=DIRECTIONS), situation) is None
 
 
 def at_a_loss(situation: Situation) -> Decision:

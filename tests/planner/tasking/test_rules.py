@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from benchmarks.worlds.drawn import drawn_problem
+from benchmarks.orders.planning import house
+from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_search import SWAPPED, moved
@@ -14,11 +16,13 @@ from utak.geometry.manipulation.goals import End, Inside
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.body import Grasp
 from utak.kb.language.reader import facts_from_text
+from utak.kb.reasoning.solver import solve_within
 from utak.planner.goals.object_goals import goal_placement
 from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.carry import CarryOracle
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
+from utak.planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
 from utak.planner.tasking.rule_effects import (
     DoorRules,
     doors_led_round,
@@ -288,3 +292,16 @@ def test_the_robot_takes_another_door_where_a_rule_forbids_the_nearest(
     found = run(scene(tmp_path, world, "", "in(utak, room(next))."), Settings(kb_files=tuple(map(str, rules))))
     assert found.result.believed
     assert (found.session.table.utak[0] < 16) == (room == "west")
+
+
+def test_a_rule_that_forbids_nothing_costs_no_answer(tmp_path: Path) -> None:
+    """In six rooms with six goals the cheapest plan is proved with it as without it, at the same cost."""
+    rule = tmp_path / "idle.lp"
+    rule.write_text(":- occurs(carry(X, P), T), size(X, S), S > 5000.\n")
+    rows, ends = house(np.random.default_rng([1, 6, 6]), 6, 6, 6)
+    situation = replace(drawn_situation(rows), rules=(rule,))
+    problem = drawn_problem(situation, ends)
+    made = make_plan(problem, situation, CarryOracle(problem, situation, on_lattice=True))
+    assert made.plan.unmet == ()
+    without, ruled = (solve_within([TASK_ENCODING, *rules], made.facts, MAX_PLAN_CONFLICTS) for rules in ((), (rule,)))
+    assert without.proved and ruled.proved and without.cost == ruled.cost

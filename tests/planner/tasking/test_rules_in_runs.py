@@ -346,3 +346,11 @@ def test_a_goal_of_a_rule_that_cannot_be_planned_is_named() -> None:
     episode = run_with("08", EXCHANGE, TWO_THINGS, "in(x, room(next)).")
     assert episode.verdict == "limit" and documented("08").name in episode.reason
     assert not moves_of(episode, "g1") and not moves_of(episode, "r1")
+
+
+@pytest.mark.long
+def test_a_rule_on_what_things_are_proves_nothing_and_is_named(tmp_path: Path) -> None:
+    rules = rule_file(tmp_path, "shape(N, square, 1) :- fit(N, square, _, _).")
+    episode = utak.Run(utak.Scenario.read(EXAMPLES / EXCHANGE), rules=[rules]).finish()
+    assert episode.verdict == "limit"
+    assert f"what things are is said by the rule at {rules}:1" in episode.reason

@@ -4,6 +4,7 @@ import math
 import re
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as ET
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +21,7 @@ pytest.importorskip("svg.path")
 
 from utak.simulator.importing.svg_outlines import SvgError, parse_transform, rings_of
 
+MAX_SECONDS = 30.0  # seconds of processor time: many times what linear reading takes, far less than quadratic one
 SHARED = Path("/work/shared/data/namosim")
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 90">\n'
 CONFIG = '<namo_config cell_size_cm="5"><agent agent_id="r"><goal goal_id="g"/></agent></namo_config>\n'
@@ -367,10 +369,32 @@ def test_what_is_not_heeded_is_told(drawn: str, tmp_path: Path, capsys: pytest.C
     assert NOTES[drawn] in capsys.readouterr().err
 
 
-def test_what_draws_itself_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, f'{WALL}<g id="a"><use href="#a"/><use href="#a"/></g>'))
+MANY = '<g id="a">' + '<use href="#b"/>' * 150 + '</g><g id="b">' + '<use href="#c"/>' * 150 + '</g><g id="c"/>'
+UNBOUNDED = {  # small files that draw much, and what is said of them
+    "draws itself": ('<g id="a"><use href="#a"/><use href="#a"/></g>', "elements are drawn within each other"),
+    "a long chain": (
+        "".join(f'<g id="a{n}"><use href="#a{n + 1}"/></g>' for n in range(99)) + '<g id="a99"/>',
+        "elements are drawn within each other",
+    ),
+    "used again and again": (MANY, "elements are drawn"),
+    "a long style that is used again": (
+        f'<g id="a" style="{"x:y;" * 100_000}"/>' + '<use href="#a"/>' * 20,
+        "characters of attributes are drawn",
+    ),
+    "a long word": (f'<g transform="{"a" * 400_000}"/>', "is no transform"),
+}
+
+
+@pytest.mark.parametrize("name", UNBOUNDED)
+def test_a_file_takes_no_more_time_than_its_size_lets_expect(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drawn, said = UNBOUNDED[name]
+    (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, f"{WALL}{drawn}"))
+    began = time.process_time()
     assert main(["import", str(tmp_path / "a.svg"), str(tmp_path / "s")]) == 65
-    assert "elements are drawn" in capsys.readouterr().err
+    assert time.process_time() - began < MAX_SECONDS
+    assert said in capsys.readouterr().err
 
 
 def test_a_missing_library_is_named(tmp_path: Path) -> None:

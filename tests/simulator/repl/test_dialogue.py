@@ -359,6 +359,12 @@ def test_the_table_of_commands_can_be_another_one(
     assert "unknown command why" in talk(dialogue, capsys, "why x")[1]
 
 
+def test_a_word_too_many_is_told(episode: Path, engine: QueryEngine, capsys: pytest.CaptureFixture[str]) -> None:
+    """No other command is proposed for one that is right but for what stands behind it."""
+    _, told = talk(dialogue_of(episode, engine), capsys, "quit now")
+    assert "quit takes nothing behind it" in told and "did you mean" not in told
+
+
 def test_help_is_there_for_every_command(
     episode: Path, engine: QueryEngine, capsys: pytest.CaptureFixture[str]
 ) -> None:
