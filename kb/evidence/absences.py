@@ -63,7 +63,7 @@ class AbsenceExplainer:
         """Return that a thing, room or door that a fact names is not believed to be there; None where all are."""
         name, arguments = atom_parts(wanted)
         facts = [atom_parts(fact) for fact in self._facts.record.steps[step].facts]
-        for one in () if name in TASK_PLAN_NAMES else filter(NAMED.fullmatch, arguments):
+        for one in () if name in (*TASK_PLAN_NAMES, "held") else filter(NAMED.fullmatch, arguments):
             kind, stated = KINDS_BY_LETTER[one[0]]
             named = (parts[0] for word, parts in facts if word == stated)
             there = [other for other in dict.fromkeys(named) if NAMED.fullmatch(other)]
