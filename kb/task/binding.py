@@ -88,15 +88,14 @@ def rules_that_deny(parameter: str, reconciled: Reconciliation, rules: tuple[Pat
 
 
 def rules_on_what_fits(parameter: str, task: Task, rules: tuple[Path, ...]) -> str:
-    """Return the places of the users' rules that state kinds, or a shape claimed of a parameter; "" for none."""
-    claims = [claim.fact for claim in task.claims if claim.fact.name == "shape"]
-    shapes = [str(fact.args[1]) for fact in claims if str(fact.args[0]) == parameter]
+    """Return the places of the users' rules that state kinds, or what is claimed of a parameter; "" for none."""
+    facts = [claim.fact for claim in task.claims if claim.fact.name in ("shape", "colour")]
+    values = [str(fact.args[1]) for fact in facts if str(fact.args[0]) == parameter]
 
     def decides(atom: RuleAtom) -> bool:
         """Return whether a stated atom may decide what fits."""
-        return atom.signature == ("kind", 3) or (
-            atom.signature == ("shape", 3) and atom.constants[1] in (None, *shapes)
-        )
+        value = {("shape", 3): 1, ("has", 4): 2}.get(atom.signature)
+        return atom.signature == ("kind", 3) or (value is not None and atom.constants[value] in (None, *values))
 
     stating = read_rules(rules).statements if rules else ()
     places = [one.line for one in stating if one.declares is None and any(map(decides, one.heads))]

@@ -166,7 +166,8 @@ def test_rules_that_say_what_things_are_are_named_where_that_decides_what_fits(t
         "shape(N, brick, 99) :- fit(N, brick, _, _).\n"
         "kind(P, verge, 99) :- extent(P, E), E > 30.\n"
         ":- brought(X, _, _, _), shape(X, disc, C), C > 5.\n"
+        "has(N, shape, disc, 1) :- has(N, colour, r, _).\n"
     )
     assert rules_on_what_fits("x", wanted, rules) == f"{rules[0]}:1 and {rules[0]}:3"
-    assert rules_on_what_fits("y", wanted, rules) == f"{rules[0]}:3"
+    assert rules_on_what_fits("y", wanted, rules) == f"{rules[0]}:3 and {rules[0]}:5"
     assert rules_on_what_fits("x", wanted, ()) == ""
