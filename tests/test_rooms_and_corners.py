@@ -161,3 +161,21 @@ def test_a_thing_is_brought_beside_a_corner_and_not_into_it(tmp_path: Path, firs
     assert result["verdict"] == "done"
     assert last["step"] <= 10
     assert shapely.Point(last["utak"]).distance(shapely.Point(2, 20)) <= 2  # the corner, seen from the table
+
+
+PULLED_THROUGH_ITS_PLACE = """\
+table(24, 25).
+verge("POLYGON ((0 0, 0 25, 24 25, 24 0, 0 0), (23 2, 23 24, 2 24, 2 2, 23 2))").
+utak("POINT (7.5 8.5)", 180).
+object(t1, q, "POLYGON ((21 22, 21 24, 23 24, 23 22, 21 22))").
+"""
+
+
+@pytest.mark.long
+def test_half_a_turn_whose_sense_is_not_known_is_gone_round_once_more(tmp_path: Path) -> None:
+    """The robot pulls the thing out of the corner over the place where it stood itself, and then goes round it."""
+    (tmp_path / "expect.lp").write_text("circles(utak, t1).\n")
+    start, goal = "object(x). shape(x, square).\n", "circled(utak, x).\nat(utak, start).\n"
+    last, result = episode(tmp_path, PULLED_THROUGH_ITS_PLACE, start, goal)
+    assert (result["verdict"], result["achieved"]) == ("done", True)
+    assert last["step"] <= 20

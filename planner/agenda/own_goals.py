@@ -47,6 +47,7 @@ from utak.planner.tasking.setting import DestinationFunction
 
 LEAST_ROUND = 330.0  # degrees by which a track winds about a thing that it goes round (the meaning of the goal)
 START_REACH = 1.5  # squares in each axis from where the robot woke within which it is back there, at most (derived)
+HALF_TURN = 180.0  # degrees
 NO_ROUND = 5.0  # degrees that do not matter for the sense of rotation (convention)
 
 
@@ -56,6 +57,9 @@ class Round:
 
     begin: int = 0  # the index of the place of the track at which it begins: where the thing was let go last
     before: float = 0.0  # by how many degrees the track went round the thing before that, counter-clockwise positive
+    # By how many degrees more or fewer: where the thing was moved through its own middle, the sense of half a turn is
+    # not known
+    doubt: float = 0.0
 
     def besides(self, track: Sequence[XY], node: Node, back: bool) -> float:
         """Return by how many degrees the robot goes round the thing before this way and on the shortest way back."""
@@ -65,8 +69,10 @@ class Round:
         """Return the round after another place of the track. held : whether the thing was moved to there."""
         if not held:
             return self
-        ways = pairwise(track[self.begin :])
-        return Round(len(track) - 1, self.before + sum(_turned(start, end, node) for start, end in ways))
+        turns = [_turned(start, end, node) for start, end in pairwise(track[self.begin :])]
+        known = [turn for turn in turns if abs(turn) <= HALF_TURN - NO_ROUND]
+        doubt = self.doubt + HALF_TURN * (len(turns) - len(known))
+        return Round(len(track) - 1, self.before + sum(known), doubt)
 
 
 class OwnGoals:
@@ -203,8 +209,12 @@ class OwnGoals:
         winding = winding_number(track, node)
         back = any(is_at_start(goal) and str(goal.args[0]) == ROBOT for goal in situation.task.goals)
         besides = self._round.besides(turn.track, node, back)
-        if is_home and abs(winding) == 1 and abs(besides + 360.0 * winding) >= LEAST_ROUND:
+        if is_home and abs(winding) == 1 and abs(besides + 360.0 * winding) - self._round.doubt >= LEAST_ROUND:
             return _attained(f"{stage} holds", turn)
+        if is_home and abs(winding) == 1:  # once more: what is in doubt may have been in the other sense
+            turned = self._round.before + 360.0 * winding
+            self._round = replace(self._round, begin=len(turn.track) - 1, before=turned)
+            return self._go_round(name, turn)
         offered = encircling_routes(cost_maps, track, node)
         self._turn = self._turn or (besides > NO_ROUND) - (besides < -NO_ROUND)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
