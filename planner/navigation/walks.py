@@ -139,7 +139,7 @@ def choose_walk(
     about = [_corners_in_robot_frame(route, model) for route in walks.routes]
 
     if rules.files:
-        facts += [*_facts_for_rules(walks.links, model, rules), *rules.world]
+        facts += [*(_facts_for_rules(walks.links, model, rules) if walks.links else ()), *rules.world]
 
     def facts_over(links: Iterable[Link]) -> list[str]:
         """Return the facts of a choice among some of the links."""

@@ -91,11 +91,11 @@ def test_the_shortest_way_over_links_is_the_shortest_route(free: np.ndarray, one
     )
 
 
-def chosen(files: tuple[Path, ...] = ()) -> tuple[bool, float]:
-    """Return whether the walk to the east leads north of the pillar, and how long it is."""
+def chosen(files: tuple[Path, ...] = (), far: int = 17) -> tuple[bool, float]:
+    """Return whether the walk so far to the east leads north of the pillar, and how long it is."""
     model = known_model(PILLAR)
     cost_maps = CostMaps(model)
-    row, column = model.view.locate(model.place[0] + 17, model.place[1])
+    row, column = model.view.locate(model.place[0] + far, model.place[1])
     goal = np.array([row * model.labels.shape[1] + column])
     walk = choose_walk(find_walks(cost_maps, 0, goal, "skeleton"), cost_maps, frozenset(), (), WalkRules(files=files))
     assert walk is not None
@@ -103,7 +103,7 @@ def chosen(files: tuple[Path, ...] = ()) -> tuple[bool, float]:
     assert walk.squares[-1] == (column, row)
     assert cost_maps.free(0)[tuple(np.array(walk.squares).T[::-1])].all()
     beside = [y for x, y in walk.squares if abs(x - cost_maps.here[0] - 9) <= 2]
-    return min(beside) > cost_maps.here[1], walk.length
+    return min(beside, default=0) > cost_maps.here[1], walk.length
 
 
 def test_rules_of_users_lead_over_other_links(tmp_path: Path) -> None:
@@ -166,6 +166,15 @@ WALKS_BACK: dict[str, tuple[utak.Scenario, Side, Side]] = {  # where the way bac
         lambda stops: any(y > 17 for _, y in stops),
     ),
 }
+
+
+@pytest.mark.parametrize("far", range(-2, 20))
+def test_a_rule_that_changes_nothing_changes_no_walk(tmp_path: Path, far: int) -> None:
+    """However far the goal is: also where no link lies between it and the robot."""
+    rules = tmp_path / "rules.lp"
+    rules.write_text("large(X) :- rect(X, W, S, E, N), E - W >= 30000.")
+    if not 7 <= far <= 11:  # within the pillar
+        assert chosen((rules,), far) == chosen((), far)
 
 
 @pytest.mark.long
