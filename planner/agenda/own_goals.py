@@ -47,7 +47,6 @@ from utak.planner.tasking.setting import DestinationFunction
 
 LEAST_ROUND = 330.0  # degrees by which a track winds about a thing that it goes round (the meaning of the goal)
 START_REACH = 1.5  # squares in each axis from where the robot woke within which it is back there, at most (derived)
-HALF_TURN = 180.0  # degrees
 NO_ROUND = 5.0  # degrees that do not matter for the sense of rotation (convention)
 
 
@@ -70,8 +69,8 @@ class Round:
         if not held:
             return self
         turns = [_turned(start, end, node) for start, end in pairwise(track[self.begin :])]
-        known = [turn for turn in turns if abs(turn) <= HALF_TURN - NO_ROUND]
-        doubt = self.doubt + HALF_TURN * (len(turns) - len(known))
+        known = [turn for turn in turns if abs(turn) <= 180.0 - NO_ROUND]
+        doubt = self.doubt + 180.0 * (len(turns) - len(known))
         return Round(len(track) - 1, self.before + sum(known), doubt)
 
 

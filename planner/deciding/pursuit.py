@@ -169,7 +169,7 @@ class Pursuer:
         rules = WalkRules(forbidden, prices)
         if self._is_ruled(situation):
             world = situation.facts_for_rules(WALKS_ENCODING.stem)
-            rules = WalkRules(forbidden, prices, situation.rules, world, situation.track, situation.rooms)
+            rules = rules._replace(files=situation.rules, world=world, track=situation.track, rooms=situation.rooms)
         return choose_walk(walks, situation.cost_maps, before, situation.doors, rules)
 
     def _is_ruled(self, situation: Situation) -> bool:

@@ -147,12 +147,13 @@ def choose_walk(
 
     links = walks.links
     if not rules.files:  # then all prices are lengths, or come on top of them
-        known = [link for link in links if any(link.name in way for way in walks.ways)]
+        offered = {name for way in walks.ways for name in way}
+        known = facts_over(link for link in links if link.name in offered)
         with record_decisions():
-            best = solve_within([WALKS_ENCODING], facts_over(known), MAX_WALK_CONFLICTS, about)
+            best = solve_within([WALKS_ENCODING], known, MAX_WALK_CONFLICTS, about)
         if best.atoms is not None:  # what is longer cannot be better
-            within = links_within(links, walks.ends, best.cost_at(0) / 100)
-            links = tuple(link for link in links if link in known or link in within)
+            offered |= {link.name for link in links_within(links, walks.ends, best.cost_at(0) / 100)}
+            links = tuple(link for link in links if link.name in offered)
     given = facts_over(links)
     atoms = solve_within([WALKS_ENCODING, *rules.files], given, MAX_WALK_CONFLICTS, about).atoms
     if atoms is None:
