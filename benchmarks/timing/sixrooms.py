@@ -11,8 +11,8 @@ By the clock on the wall: `start` from the parent's call until Python runs bench
 of the robot and of numba, `read` of start.lp and goal.lp, `model` from the first impression to the world model,
 `decide` from there to the first command. `thinking` is the sum of the last three, `all` of everything. By the
 processor's clock, which other work on the machine does not affect: `thought` is the thinking and `cpu` everything.
-Not timed are the writing of the truth into the map, and what the body does. `rounds` are the choices of
-planner/asp/transport.lp that geometry was asked for.
+Not timed are the writing of the truth into the map, and what the body does. `rounds` are the
+questions about carrying that geometry was asked.
 """
 
 import argparse

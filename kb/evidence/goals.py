@@ -19,12 +19,8 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     AGENDA: ("do", "this activity was chosen"),
     "aims": ("choose", "this subgoal was chosen"),
     "walks": ("walked", "this way was chosen, before it was pulled tight"),
-    "transport": ("try", "geometry was asked for this way of carrying (to what end, over how sure squares)"),
     "feel": ("feel", "this halt was chosen to feel walls"),
-    "boldness": ("take", "this manipulation plan was taken"),
 }
-
-ASKED_IN_VAIN = frozenset({"transport"})  # those of which the choice counts also where it led to no command
 
 
 @dataclass(frozen=True)
@@ -42,8 +38,7 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
         return Reason("the robot wakes", "every run begins so", ReasonKind.CONVENTION, "step 0")
     command = command_reason(now)
     planned = plan_step_reasons(beliefs, step - 1)
-    choices = (reason for _, reason in _choices(beliefs, step - 1))
-    below = (*planned, *_goal_reasons(beliefs, task, step - 1), *choices)
+    below = (*planned, *_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
     return Reason(command.claim, now.why, ReasonKind.COMMAND, f"step {step}", below, command.data)
 
 
@@ -54,8 +49,7 @@ def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None
     last = len(beliefs.record.steps) - 1
     claim = f"verdict({task.result['verdict']})"
     ruled = tuple(_ruled_verdicts(beliefs, claim, last))
-    asked = ASKED_IN_VAIN if ruled else CHOICES.keys()
-    choices = (reason for encoding, reason in _choices(beliefs, last) if encoding in asked)
+    choices = () if ruled else _choices(beliefs, last)
     below = (*ruled, *plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *choices)
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 
@@ -168,8 +162,8 @@ def _ruled_verdicts(beliefs: FactExplainer, claim: str, step: int) -> Iterator[R
         yield replace(beliefs.prove(asked[-1], claim, step), because="the agenda ends with this verdict")
 
 
-def _choices(beliefs: FactExplainer, step: int) -> Iterator[tuple[str, Reason]]:
-    """Yield what each of the planner's encodings chose last at a step, with its name: why, and what it refused."""
+def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
+    """Yield what each of the planner's encodings chose last at a step: why, and what it refused."""
     latest: dict[str, SolverCall] = {}
     for call in beliefs.record.decisions(step):
         if call.encoding in CHOICES and call.answer:
@@ -178,7 +172,7 @@ def _choices(beliefs: FactExplainer, step: int) -> Iterator[tuple[str, Reason]]:
         predicate, words = CHOICES[encoding]
         for atom in call.answer or ():
             if atom_parts(atom)[0] == predicate:
-                yield encoding, replace(beliefs.prove(call, atom, step), because=_about(call, atom) or words)
+                yield replace(beliefs.prove(call, atom, step), because=_about(call, atom) or words)
 
 
 def _about(call: SolverCall, atom: str) -> str:

@@ -57,7 +57,10 @@ NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT, HALT_
     NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time", "halt")
 )
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
+SUBGOAL_KINDS = ("attain", "inspect", "explore", "pass", "settle", "feel")
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
+# What reconciliation.lp says of a parameter and a node.
+MATCHES = ["bound_before", "planned", "given_up", "refused", "as_well", "bind", "doubtful", "unmovable", "measurable"]
 CLAIMED_RELATIONS = ("in", "beside", "joins")  # what claims relate two parameters by
 CHANCES_OF = ("may_be", "joined", "hidden", "loc")  # what chances.lp states of three arguments
 PLACE_CASE = word_argument("case", ("likely", "other", "open", "closed", "door", "verge"))  # where a thing may be
@@ -213,6 +216,16 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stands", 4): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NAME_ARGUMENT, AMOUNT_ARGUMENT),
         **{one: BELIEF_PREDICATES[one].arguments for one in [(name, 3) for name in CHANCES_OF] + [("plug", 2)]},
     },
+    "aims": {
+        ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
+        ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
+        ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
+        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "choose")},
+        ("in_room", 2): (NUMBER_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("point", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
+        ("beside", 2): (NUMBER_ARGUMENT, NODE_ARGUMENT),
+        ("aim_price", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
+    },
     "walks": {
         **{one: BELIEF_PREDICATES[one].arguments for one in (("link", 5), ("crosses", 2), ("borders", 2))},
         **{(name, 1): (JUNCTION_ARGUMENT,) for name in ("begins", "ends")},
@@ -238,45 +251,28 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("decides", 2): (_compound_argument("act", "acts", ACTS), FACT_ARGUMENT),
     },
     "reconciliation": {
-        ("wanted", 1): (PARAMETER_ARGUMENT,),
-        ("named", 1): (PARAMETER_ARGUMENT,),
+        **{(name, 1): (PARAMETER_ARGUMENT,) for name in ("wanted", "named", "carried", "kept", "hypothesised")},
         ("claim", 4): (PARAMETER_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("described", 2): (PARAMETER_ARGUMENT, word_argument("kind", ("door", "room"))),
         ("related", 4): (RELATION_ARGUMENT, PARAMETER_ARGUMENT, PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("place", 3): (CANDIDATE_ARGUMENT, word_argument("kind", ("door", "room")), CONFIDENCE_ARGUMENT),
         ("holds", 3): (RELATION_ARGUMENT, CANDIDATE_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("measure", 5): (
-            CANDIDATE_ARGUMENT,
-            PROPERTY_ARGUMENT,
-            LENGTH_ARGUMENT,
-            LENGTH_ARGUMENT,
-            CONFIDENCE_ARGUMENT,
-        ),
+        ("measure", 5): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, *[LENGTH_ARGUMENT] * 2, CONFIDENCE_ARGUMENT),
         ("candidate", 2): (CANDIDATE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("has", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("seen", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("settled", 2): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
         ("distance", 2): (CANDIDATE_ARGUMENT, AMOUNT_ARGUMENT),
-        ("bound_before", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("carried", 1): (PARAMETER_ARGUMENT,),
         **{(name, 1): (CANDIDATE_ARGUMENT,) for name in ("fixed", "moved")},
         ("may_have", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
-        ("planned", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("given_up", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("refused", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("kept", 1): (PARAMETER_ARGUMENT,),
         ("enough", 2): (PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("as_well", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("bind", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
-        ("hypothesised", 1): (PARAMETER_ARGUMENT,),
-        ("doubtful", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("contradicted", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
         ("near_miss", 3): (
             PARAMETER_ARGUMENT,
             CANDIDATE_ARGUMENT,
             word_argument("claim", (*PROPERTIES, *CLAIMED_RELATIONS)),
         ),
-        **{(name, 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT) for name in ("unmovable", "measurable")},
+        **{(name, 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT) for name in MATCHES},
     },
     "task": {
         ("horizon", 1): (AMOUNT_ARGUMENT,),
@@ -374,6 +370,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
+    "aims": frozenset(USER_RULE_INTERFACES["aims"]) - {("aim_price", 2)},
     "walks": frozenset(USER_RULE_INTERFACES["walks"]) - {("avoid_link", 1), ("link_price", 2)},
     "steps": frozenset(USER_RULE_INTERFACES["steps"]),
     "feel": frozenset(USER_RULE_INTERFACES["feel"]) - {("supposed", 3)},
@@ -390,7 +387,9 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        **dict.fromkeys(("reconciliation", "chances", "walks", "feel", "task", "steps", "agenda"), WORLD_PREDICATES),
+        **dict.fromkeys(
+            ("reconciliation", "chances", "aims", "walks", "feel", "task", "steps", "agenda"), WORLD_PREDICATES
+        ),
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.

@@ -33,9 +33,6 @@ INTERNAL_THERE = {
         "chosen/1 explanation/4 unlikely/2 odd/1 crooked/2 stands/0 met/1 off_middle/0 trust/1 slips/0 proven/0 "
         "contradicted/1 cramped/1 clear/0 uneven/0 unchanged/0"
     ),
-    "aims": "choose/1 aim/3 besides/2 chance/2 last/1",
-    "boldness": "take/1 plan/2 hopes/1 askew/1 short/1 aside/1",
-    "transport": "last/1 option/4 refuted/3 undecided/3 hopeless/0 try/3",
 }
 # These predicates, and those encodings.
 INTERNAL_PREDICATES: dict[Signature, tuple[str, ...]] = {}

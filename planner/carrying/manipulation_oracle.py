@@ -1,12 +1,11 @@
 """Manipulation oracle: geometry is asked how an object can be carried.
 
-planner/asp/transport.lp chooses the order of the options, and they are tried one after the other. What geometry proves
-impossible comes back as a fact, and rules out every harder option. A plan that is found may lead over squares that are
-not surely free: then these must be seen first.
+The cheapest option is asked first. What geometry proves impossible rules out every harder option. A plan that is found
+may lead over squares that are not surely free: then these must be seen first.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import product
@@ -26,7 +25,6 @@ from utak.kb.language.goal_words import ROBOT
 from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.perception.frame import ADJACENT_OFFSETS
-from utak.kb.reasoning.solver import solve
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.carrying.infeasibility import Infeasibility, certify
 from utak.planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor
@@ -36,7 +34,6 @@ from utak.planner.goals.placement import (
     possible_extension,
     to_view_frame,
 )
-from utak.planner.navigation.subgoals import PLANNER_ASP
 from utak.planner.screen.moves import is_at, orientation_is_uncertain
 from utak.planner.screen.projection import UNSEEN_LEVEL, dilate
 from utak.planner.situation import Situation
@@ -55,14 +52,39 @@ WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on ran
 INEXACT_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
 MAX_MARGIN = 0.6  # squares: the most that is kept free, so that doors stay passable; tuned likewise
 TURN_ARM = 0.4  # squares that a point of an object moves for each degree that it is turned, about; a convention
+DOUBT_COST = 10.0  # squares that each level of doubt costs: the robot looks before it relies on squares; tuned likewise
+ASIDE_COST = 25.0  # squares that it costs to move others aside, about fifteen commands; tuned likewise
+SWITCH_COST = 4.0  # squares that it costs to turn to another end than last time; tuned likewise
 MAX_REMEMBERED = 512  # answers of geometry that are remembered; a bound on memory
 
 
 class OtherObjects(StrEnum):
-    """The treatment of other objects by a plan, as planner/asp/transport.lp knows it."""
+    """The treatment of other objects by a plan."""
 
     CLEAR = "clear"  # lead round all of them
     ASIDE = "aside"  # lead as if those that may be moved were not there; they are then moved aside first
+
+
+class Option(NamedTuple):
+    """A question that geometry may be asked: how an object is carried to one end over squares of one certainty."""
+
+    end: str  # the name of the end
+    level: int  # the certainty level of the squares that may be used, 0 the surest
+    others: OtherObjects
+    way: float  # a lower bound of the way, in squares, and what it costs to turn to another end
+
+    def cost(self) -> float:
+        """Return the way, with what doubtful squares and others in the way cost, in squares."""
+        return self.way + DOUBT_COST * self.level + ASIDE_COST * (self.others == OtherObjects.ASIDE)
+
+    def most_telling(self) -> tuple[int, float]:
+        """Return the key by which the option comes first of which a refutation rules out most others."""
+        return (self.others == OtherObjects.CLEAR) - self.level, self.cost()
+
+    def is_harder_than(self, refuted: "Option") -> bool:
+        """Return whether it allows no square, and moves nothing aside, that a refuted one did not."""
+        clearer = self.others == refuted.others or refuted.others == OtherObjects.ASIDE
+        return self.end == refuted.end and self.level <= refuted.level and clearer
 
 
 @dataclass(frozen=True)
@@ -137,21 +159,19 @@ class ManipulationOracle:
         """Return the plan that is chosen and verified, or why there is none."""
         shape, utak = to_view_frame(request.node.polygon, situation), situation.model.place_on_view
         floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
-        options = [
-            f"option({name},{level},{others},{round(10 * _least_way(end, shape))})"
+        left = [
+            Option(name, level, others, round(_least_way(end, shape), 1) + SWITCH_COST * _is_switch(name, request))
             for name, end in sorted(request.ends.items())
             for level, others in floors
         ]
-        options += [f"last({request.last_target})"] * (request.last_target in request.ends)
-        verdicts: list[str] = []
         forbidden: list[str] = []  # what users' rules say of plans that were found
         refuted: list[tuple[int, CarryingPlan]] = []  # each with the level that it was asked for
         for number in range(1, MAX_ORACLE_ROUNDS + 1):
             UNDER_WAY.words = f"carrying {request.node.name}, way {number} of at most {MAX_ORACLE_ROUNDS}"
-            choice = _choose_option([*options, *verdicts, *["hopeless"] * self._found_nothing])
-            if choice is None:
+            if not left:
                 break
-            name, level, others = choice
+            asked = min(left, key=Option.most_telling if self._found_nothing else Option.cost)
+            name, level, others, _ = asked
             floor = CarryingFloor(shape, utak, floors[level, others], situation.cost_maps.free(level))
             plan = self._ask_geometry(request, request.ends[name], floor, situation.model)
             if plan.status == "found" and self._found_nothing:
@@ -170,8 +190,8 @@ class ManipulationOracle:
                 request = replace(request, avoid=(*request.avoid, *(leg.hold for leg in bolder.plan.legs)), held=False)
                 continue
             refuted.append((level, plan))
-            fact = "refuted" if plan.status == "impossible" else "undecided"
-            verdicts.append(f"{fact}({name},{level},{others})")
+            proved = plan.status == "impossible"
+            left = [one for one in left if one != asked and not (proved and one.is_harder_than(asked))]
         if forbidden:
             return Infeasibility(False, f"{request.node.name} may not be carried there: {forbidden[-1]}")
         self._found_nothing = True
@@ -197,22 +217,18 @@ class ManipulationOracle:
     def _bolder(
         self, request: Request, found: ManipulationPlan, situation: Situation, hoped: EndsFunction
     ) -> ManipulationPlan:
-        """Return the plan that planner/asp/boldness.lp chooses: the one that was found, or a more optimistic one."""
+        """Return the plan of fewest commands: the one that was found, or a more optimistic one."""
+        # Nothing is moved aside or left askew for a plan that may fail: a failure with it would prove nothing.
         if found.level == OPTIMISTIC_LEVEL:
             return replace(found, hopes=not found.askew)
         fewest = MIN_PLAN_COMMANDS if request.held else MIN_PLAN_COMMANDS + 1
         further = isinstance(hoped().get(found.target), InCorner | Between)
         if found.level or found.aside or (found.plan.commands <= fewest and not further):
             return found
-        plans = [found, *self._optimistic_plans(request, situation, hoped)]
-        facts = []
-        for number, one in enumerate(plans):
-            facts.append(f"plan({number},{one.plan.commands})")
-            short = further and not one.hopes
-            holds = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside), "short": short}
-            facts += [f"{fact}({number})" for fact, so in holds.items() if so]
-        answer = solve([PLANNER_ASP / "boldness.lp"], facts)
-        return plans[answer[0].arguments[0].number] if answer else found
+        others = self._optimistic_plans(request, situation, hoped)
+        bold = (one for one in others if not one.askew and not one.aside)
+        # Where the thing may end further on, what was found likely ends short, and it must be pushed once more.
+        return min([found, *bold], key=lambda one: one.plan.commands + (further and not one.hopes))
 
     def _optimistic_plans(
         self, request: Request, situation: Situation, hoped: EndsFunction
@@ -346,13 +362,9 @@ def _least_way(end: End, shape: Any) -> float:
     return float(shape.distance(end.polygon)) if isinstance(end, Inside) else 0.0
 
 
-def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None:
-    """Return the end, the level and the treatment of other objects that are tried next; None when none is left."""
-    answer = solve([PLANNER_ASP / "transport.lp"], facts)
-    if not answer:
-        return None
-    name, level, others = answer[0].arguments
-    return str(name), level.number, OtherObjects(str(others))
+def _is_switch(name: str, request: Request) -> bool:
+    """Return whether an end is another one than that which was chosen last time."""
+    return request.last_target in request.ends and name != request.last_target
 
 
 def _manipulation_plan(

@@ -21,7 +21,7 @@ from utak.planner.goals.bounds import telling_squares
 from utak.planner.navigation.fewest_moves import MOVE_COST, FewestMoves
 from utak.planner.navigation.loop_guard import LoopGuard
 from utak.planner.navigation.sticky_route import StickyRoute, to_map_squares
-from utak.planner.navigation.subgoals import Subgoal, choose
+from utak.planner.navigation.subgoals import AIMS_ENCODING, AimRules, NoSubgoal, Subgoal, choose
 from utak.planner.navigation.walks import (
     WALKS_ENCODING,
     NoWalk,
@@ -30,7 +30,6 @@ from utak.planner.navigation.walks import (
     Walks,
     choose_walk,
     find_walks,
-    nearest_square,
     walks_along,
 )
 from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, next_move
@@ -88,11 +87,13 @@ class Pursuer:
                 offered = fewest.priced(offered)
             if refused:
                 offered = [one for one in (_without(one, refused, model) for one in offered) if len(one.squares)]
-            subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model))
-            if subgoal is None:
+            subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model), aim_rules(situation))
+            if isinstance(subgoal, NoSubgoal):
                 missed, circled = missing(), len(offered) < len(subgoals) and not refused
-                if refused:
-                    missed, proof = f"{missed}, and {' and '.join(dict.fromkeys(one.why for one in refused))}", ()
+                whys = [one.why for one in refused]
+                whys += [forbidden_by(subgoal.rules, "every place to go to")] * bool(subgoal.rules)
+                if whys:
+                    missed, proof = f"{missed}, and {' and '.join(dict.fromkeys(whys))}", ()
                 return _given_up(stage, missed, proof, in_circles=circled)
             taken = None if along is None else along(subgoal)
             if taken is not None:
@@ -134,7 +135,7 @@ class Pursuer:
         walked = walked or self._route_left(subgoal, reached.level, situation)
         route = walked or self._choose(find_walks(cost_maps, reached.level, subgoal.squares, self._paths), situation)
         if isinstance(route, NoWalk) and route.rules:
-            there = nearest_square(cost_maps, reached.level, subgoal.squares)
+            there = cost_maps.nearest_at(reached.level, subgoal.squares)
             return RefusedEnd(subgoal.what, there, forbidden_by(route.rules, "every way there"))
         if isinstance(route, NoWalk):
             why = f"{stage} cannot be attained: every route there leads through a forbidden door"
@@ -181,6 +182,13 @@ def end_of(route: PlannedRoute, model: WorldModel) -> XY:
     """Return the middle of the last square of a route, (x, y) in squares, map frame."""
     column, row = route.squares[-1]
     return column + model.view.west + 0.5, row + model.view.south + 0.5
+
+
+def aim_rules(situation: Situation) -> AimRules | None:
+    """Return the users' rules about subgoals; None where there are none."""
+    if not rules_reach(AIMS_ENCODING.stem, situation.rules):
+        return None
+    return AimRules(situation.rules, situation.facts_for_rules(AIMS_ENCODING.stem), situation.rooms)
 
 
 def by_dearest_door(situation: Situation) -> list[tuple[int, Situation]]:

@@ -75,7 +75,7 @@ class WalkRules(NamedTuple):
 
 def single_route(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> PlannedRoute:
     """Return the route to the nearest reachable square of `goals` by a path-finder that finds one: visibility, grid."""
-    free, goal = cost_maps.free(level), nearest_square(cost_maps, level, goals)
+    free, goal = cost_maps.free(level), cost_maps.nearest_at(level, goals)
     if goal == cost_maps.here:
         return PlannedRoute((goal,), 0.0, 0.0, level)
     points = SINGLE_PATH_FINDERS[finder](free, _centre(cost_maps.here), _centre(goal))
@@ -96,7 +96,7 @@ SINGLE_PATH_FINDERS: Mapping[str, Callable[[Bools, XY, XY], Floats | None]] = {
 
 def find_walks(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> Walks:
     """Return the links and ways to the nearest reachable square of `goals`, at a certainty level."""
-    goal = nearest_square(cost_maps, level, goals)
+    goal = cost_maps.nearest_at(level, goals)
     if finder in SINGLE_PATH_FINDERS or goal == cost_maps.here:
         return walks_along([single_route(cost_maps, level, goals, finder)])
     free = cost_maps.free(level)
@@ -197,14 +197,6 @@ def _facts_for_rules(links: Sequence[Link], model: WorldModel, rules: WalkRules)
 def _risk(columns: Longs, rows: Longs, model: WorldModel) -> int:
     """Return the probability of being occupied, in percent, summed over some squares of the view."""
     return round(100 * float(model.view.probability[rows, columns].sum()))
-
-
-def nearest_square(cost_maps: CostMaps, level: int, goals: SquareIndices) -> Square:
-    """Return the square of `goals`, (column, row), to which the shortest way leads at a level."""
-    distances = cost_maps.distances[level].ravel()
-    reached = goals[distances[goals] >= 0]
-    row, column = divmod(int(reached[np.argmin(distances[reached])]), cost_maps.floor.shape[1])
-    return column, row
 
 
 def _planned(points: Floats, length: float, clearance: float, free: Bools, level: int) -> PlannedRoute:

@@ -14,7 +14,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from utak.geometry.kernels.arrays import XY, Bools, Floats
+from utak.geometry.kernels.arrays import XY, Bools, Floats, Square
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach
 from utak.kb.mapping.occupancy import FREE, OPEN
@@ -84,6 +84,13 @@ class CostMaps:
     def distances(self) -> "DistanceMaps":
         """The length of the shortest way from the robot to every square, by certainty level."""
         return DistanceMaps(self)
+
+    def nearest_at(self, level: int, squares: SquareIndices) -> Square:
+        """Return the one of some squares, (column, row), to which the shortest way leads at a certainty level."""
+        distances = self.distances[level].ravel()
+        reached = squares[distances[squares] >= 0]
+        row, column = divmod(int(reached[np.argmin(distances[reached])]), self.floor.shape[1])
+        return column, row
 
     def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached."""

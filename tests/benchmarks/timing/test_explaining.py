@@ -9,10 +9,10 @@ from benchmarks.timing.explaining import decisions, in_words, main
 
 SOLVED = [
     ["interpretation", ["region(a,zero,100)"], ["kind(a,floor,100)"], []],
-    ["boldness", ["plan(1,3)", "plan(2,4)"], ["take(1)"], []],
-    ["boldness", [0, 1]],
+    ["aims", ["aim(1,explore,30)", "aim(2,explore,40)"], ["choose(1)"], []],
+    ["aims", [0, 1]],
     ["rooms", [], []],
-    ["boldness", ["plan(1,3)", "hopes(1)", "askew(1)"], None, []],
+    ["aims", ["chance(1,5)"], None, []],
 ]
 
 
@@ -24,14 +24,14 @@ def episode(tmp_path: Path) -> Path:
 
 
 def test_decisions_with_an_answer_are_read(tmp_path: Path) -> None:
-    assert [name for name, _, _ in decisions(episode(tmp_path))] == ["interpretation", "boldness"]
+    assert [name for name, _, _ in decisions(episode(tmp_path))] == ["interpretation", "aims"]
 
 
 def test_each_encoding_has_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(episode(tmp_path)), "--absences", "1"]) == 0
     rows = {line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines()[1:]}
-    assert rows.keys() == {"interpretation", "boldness"}
-    assert rows["boldness"][1] == "1" and rows["boldness"][-1] != "-" and rows["interpretation"][-1] == "-"
+    assert rows.keys() == {"interpretation", "aims"}
+    assert rows["aims"][1] == "1" and rows["aims"][-1] != "-" and rows["interpretation"][-1] == "-"
 
 
 def test_times_in_words() -> None:

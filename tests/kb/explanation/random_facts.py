@@ -12,7 +12,7 @@ HOW = ("predicted", "blocked", "slipped", "turned", "misled", "smaller", "larger
 LINKS = ("l1", "l2")
 EXPLANATIONS, REGIONS, NODES, THINGS, NUMBERS = (1, 2, 3), ("a", "b", "c"), ("n1", "n2"), ("x", "y"), (1, 2, 3)
 CLASSES, PROPERTIES, VALUES = ("square", "brick", "disc"), ("shape", "colour"), ("square", "g")
-KINDS, PLACES, LEVELS, WAYS = ("attain", "explore", "pass", "settle"), ("g", "h"), (0, 1, 2), ("clear", "aside")
+KINDS = "attain", "explore", "pass", "settle"
 ACTIVITIES = (
     "keep",
     "resume(clear)",
@@ -50,7 +50,8 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "fit": (("o1", "o2"), CLASSES, (0, 1, 2, 4), NUMBERS), "open_squares": (("o1", "o2"), (0, 4, 40)),
         "full_squares": (("o1", "o2"), (9, 12)),
     },
-    "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,)},
+    "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,),
+             "aim_price": (NUMBERS, (30, 200))},
     "agenda": {
         "stage_goal": (("g1", "g2"), (1, 2)), "missing": (("g1", "g2"),), "unclear": (("g1", "g2"),),
         "own_goals": (), "regions_forbidden": (),
@@ -60,18 +61,10 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "feel": {
         "halt": (NUMBERS, (20, 90), (1, 2)), "tells": (NUMBERS, ("thing", "plain"), ("doorway", "square"), (1, 3)),
     },
-    "boldness": {
-        "plan": (NUMBERS, (3, 4, 8)), "hopes": (NUMBERS,), "askew": (NUMBERS,), "short": (NUMBERS,),
-        "aside": (NUMBERS,),
-    },
     "walks": {
         "begins": (("j1",),), "ends": (("j2",),), "link": (LINKS, ("j1",), ("j2", "j3"), (400, 600), (50, 200)),
         "crosses": (LINKS, ("d1", "d2")), "tight": (NUMBERS, (400, 600), (50, 200), (0, 30)), "part": (NUMBERS, LINKS),
         "through": (NUMBERS, ("d1", "d2")), "not_through": (("d1", "d2"),), "last": (NUMBERS,), "avoid_link": (LINKS,),
-    },
-    "transport": {
-        "option": (PLACES, LEVELS, WAYS, (20, 90)), "refuted": (PLACES, LEVELS, WAYS),
-        "undecided": (PLACES, LEVELS, WAYS), "hopeless": (), "last": (PLACES,),
     },
 }  # fmt: skip
 # By encoding: shown predicates, with the values of their arguments.
@@ -90,9 +83,7 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "aims": {"choose": (NUMBERS,)},
     "agenda": {"do": (ACTIVITIES,), "stage_attained": (), "verdict": (("done", "limit", "impossible", "possible_if"),)},
     "feel": {"feel": (NUMBERS,)},
-    "boldness": {"take": (NUMBERS,)},
     "walks": {"step": (LINKS, ("j1",), ("j2", "j3")), "walked": (NUMBERS,)},
-    "transport": {"try": (PLACES, LEVELS, WAYS)},
 }  # fmt: skip
 
 

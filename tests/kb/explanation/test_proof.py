@@ -130,20 +130,21 @@ def test_a_greatest_value_shows_what_it_is_the_greatest_of() -> None:
 
 
 def test_a_choice_tells_what_others_would_cost() -> None:
-    facts = ["plan(1,5)", "plan(2,3)", "plan(3,7)", "hopes(2)", "askew(2)"]
-    root = explain_decision("boldness", facts, ["take(1)"], "take(1)").root
+    facts = ["begins(j1)", "ends(j2)", *(f"link(l{n},j1,j2,{far},100)" for n, far in enumerate((500, 300, 700), 1))]
+    facts += ["crosses(l2,d1)", "not_through(d1)"]
+    root = explain_decision("walks", facts, ["step(l1,j1,j2)"], "step(l1,j1,j2)").root
     dearer, forbidden = root.rivals
-    assert (dearer.atom, dearer.verdict, dearer.level, dearer.difference) == ("take(3)", "dearer", 1, 2)
-    assert (forbidden.atom, forbidden.verdict) == ("take(2)", "forbidden")
+    assert (dearer.atom, dearer.verdict, dearer.level, dearer.difference) == ("step(l3,j1,j2)", "dearer", 0, 200)
+    assert (forbidden.atom, forbidden.verdict) == ("step(l2,j1,j2)", "forbidden")
     (constraint,) = forbidden.forbidden_by
     assert constraint.rule.kind == "constraint" and constraint.sentence in forbidden.sentence
-    assert "Plan 3 takes about 7 commands" in dearer.sentence
+    assert "Link l3 is 7 squares long" in dearer.sentence
 
 
 def test_a_choice_of_none_is_a_rival_too() -> None:
-    root = explain_decision("transport", ["option(g,0,clear,50)"], ["try(g,0,clear)"], "try(g,0,clear)").root
+    root = explain_decision("steps", ["offered(0,go(1,2))"], ["begun"], "begun").root
     (none,) = root.rivals
-    assert (none.atom, none.level, none.difference) == ("", 3, 1)
+    assert (none.atom, none.level, none.difference) == ("", 0, 1)
 
 
 def test_an_atom_that_does_not_hold_has_no_proof() -> None:
@@ -185,9 +186,9 @@ def test_the_checker_finds_a_wrong_leaf_and_a_wrong_child() -> None:
 
 
 def test_the_checker_finds_a_wrong_cost() -> None:
-    facts = ["plan(1,5)", "plan(2,6)"]
-    (decision,) = best_decisions(encoding_path("boldness"), " ".join(f"{fact}." for fact in facts))
-    root = explain_decision("boldness", facts, ["take(1)"], "take(1)").root
+    facts = ["aim(1,explore,50)", "aim(2,explore,60)"]
+    (decision,) = best_decisions(encoding_path("aims"), " ".join(f"{fact}." for fact in facts))
+    root = explain_decision("aims", facts, ["choose(1)"], "choose(1)").root
     (rival,) = root.rivals
 
     for wrong in (replace(rival, difference=9), replace(rival, verdict="forbidden"), replace(rival, prices=())):

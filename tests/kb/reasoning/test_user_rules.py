@@ -140,7 +140,7 @@ WRONG = {
     "p :- &diff{a} > 3.": "theory atoms are not known here",
     ":- do(resume(nonsense)).": "unknown begun activity nonsense",
     ":- do(resume(feel(nonsense))).": "unknown begun activity feel(nonsense)",
-    ":- choose(_).": "choose/1 belongs to aims.lp, which rules of users do not reach",
+    ":- odd(_).": "odd/1 belongs to accommodation.lp, which rules of users do not reach",
     ":- chosen(E), explanation(E, slipped, _, _).": "chosen/1 belongs to accommodation.lp",
     "p(X) :- kind(X,verge,C), fit(X,S,M,R).": "this rule counts nowhere: no encoding knows all of fit/4, kind/3",
     "p(X) :- object(X), not q(X). q(X) :- object(X), not p(X).": "is defined through its own negation",

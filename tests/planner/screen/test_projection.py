@@ -16,7 +16,7 @@ from tests.tables import few
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.world.model import WorldModel
 from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
-from utak.planner.navigation.subgoals import Subgoal, choose
+from utak.planner.navigation.subgoals import NoSubgoal, Subgoal, choose
 from utak.planner.navigation.walks import WalkRules, choose_walk, find_walks, walks_along
 from utak.planner.screen.moves import (
     CARRYING_PACE,
@@ -188,9 +188,9 @@ def test_the_choice_of_a_subgoal() -> None:
     assert choose([near, far, goal], cost_maps, frozenset()) == goal
     wall = Subgoal("attain", flat(model, 14, 0), "in the wall")
     assert choose([wall, far], cost_maps, frozenset()) == far
-    assert choose([wall], cost_maps, frozenset()) is None
+    assert choose([wall], cost_maps, frozenset()) == NoSubgoal()
     assert choose([near._replace(price=30.0), far], cost_maps, frozenset()) == far
-    assert choose([], cost_maps, frozenset()) is None
+    assert choose([], cost_maps, frozenset()) == NoSubgoal()
 
 
 def test_frontiers_border_on_unseen_squares() -> None:
