@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -68,10 +68,15 @@ def choose(
         return NoSubgoal()
     files, world = ((), ()) if rules is None else (rules.files, rules.world)
     about, given = [subgoal.what for subgoal in subgoals], [*facts, *world]
-    answer = solve([AIMS_ENCODING, *files], given, about=about)
-    if answer is None:
-        return NoSubgoal(rules_to_blame(AIMS_ENCODING, files, given, lambda _: False))
-    return next(subgoals[atom.arguments[0].number] for atom in answer if atom.match("choose", 1))
+    chosen = [atom for atom in solve([AIMS_ENCODING, *files], given, about=about) or () if atom.match("choose", 1)]
+    if not chosen:
+        return NoSubgoal(rules_to_blame(AIMS_ENCODING, files, given, _chooses_nothing))
+    return subgoals[chosen[0].arguments[0].number]
+
+
+def _chooses_nothing(atoms: Sequence[Any]) -> bool:
+    """Return whether an answer, given by the shown atoms, has no subgoal."""
+    return not any(atom.match("choose", 1) for atom in atoms)
 
 
 def _facts_for_rules(number: int, place: Square, model: WorldModel, rules: AimRules) -> Iterator[str]:
