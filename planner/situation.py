@@ -136,7 +136,11 @@ class Situation:
 
     def along_with(self, patch: Patch) -> "Situation":
         """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way."""
-        return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch), self.cost_maps.kept_off))
+        return self.with_free(self.model.mask(patch))
+
+    def with_free(self, mask: Bools) -> "Situation":
+        """Return the situation with cost maps on which some squares, (rows, columns) bool, are free."""
+        return replace(self, cost_maps=CostMaps(self.model, mask, self.cost_maps.kept_off))
 
     def rooms_beyond(self, goal: Fact, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
         """Compute the squares of the rooms where a goal about rooms holds, and what to look at before it is claimed."""

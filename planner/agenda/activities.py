@@ -5,7 +5,9 @@ The activities have the names of planner/asp/agenda.lp, which chooses among them
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
+from utak.geometry.kernels.arrays import Bools
 from utak.kb.body import Grasp, Push, Release, Turn
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.language.terms import Fact
@@ -212,9 +214,19 @@ class Activities:
     def _doubt(self, subject: str, last: Decision, turn: StageTurn) -> Decision:
         """Return the open fact that would overturn a verdict; `limit` where rules close whatever door it may show."""
         scope = ALL_WALLS if subject == CONSTRAINTS else feeling_scope(turn)
-        found = open_fact_against(last, turn.situation, scope)
+        found = open_fact_against(last, turn.situation, scope, partial(self._plan_exists, turn.goals_of(subject), turn))
         vain = found.verdict == TaskVerdict.POSSIBLE_IF and rules_close_all_doors(turn.situation)
         return replace(last, verdict=TaskVerdict.LIMIT) if vain else found
+
+    def _plan_exists(self, goals: Sequence[Fact], turn: StageTurn, opened: Bools) -> bool:
+        """Return whether some goals may be attained if some squares, (rows, columns) bool, are free."""
+        situation = turn.situation.with_free(opened)
+        return bool(opened.any()) and all(
+            self._own.may_reach(goal, turn, situation)
+            if goal in turn.stage.own
+            else self._transporter.may_bring(goal, turn, situation)
+            for goal in goals
+        )
 
     def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""

@@ -38,6 +38,7 @@ from utak.planner.goals.robot_goals import (
 from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from utak.planner.screen.moves import next_move
 from utak.planner.sights.viewpoints import TO_REACH
+from utak.planner.situation import Situation
 from utak.planner.skills.into_corner import IntoCorner, halt_beside_walls
 from utak.planner.stages import ORIGIN_GOALS, is_at_start
 from utak.planner.steps import towards
@@ -111,6 +112,11 @@ class OwnGoals:
         if decision.verdict != TaskVerdict.DONE:
             intention.failed(errand, turn.situation, decision.why)
         return nothing_to_do(decision.why)
+
+    def may_reach(self, goal: Fact, turn: StageTurn, supposed: Situation) -> bool:
+        """Return whether the robot may come in another situation to where a goal for itself holds now."""
+        where = None if goal.name in TRACK_GOALS else self._where(goal, turn.situation)
+        return where is None or bool(where.missing) or supposed.cost_maps.nearest(where.squares) is not None
 
     def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
         """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict."""

@@ -139,6 +139,15 @@ class Transporter:
         decision = self._look_for_way(advice, node, land, subgoals, turn)
         return self._check_proof(advice, decision, node, land, turn)
 
+    def may_bring(self, goal: Fact, turn: StageTurn, supposed: Situation) -> bool:
+        """Return whether the object of a goal may be brought in another situation to where the goal holds now."""
+        node = turn.situation.object_of(str(goal.args[0]))
+        if node is None or node.polygon is None:
+            return True
+        ends = self._land(goal, node, turn).ends
+        refused = turn.executor.infeasibility(node, ends, supposed) if ends else None
+        return refused is None or not refused.proved
+
     def _land(self, goal: Fact, node: Node, turn: StageTurn) -> Placement:
         """Return where a goal for an object holds."""
         return self.place(goal, node, self.origin_of(str(goal.args[0]), node, turn.situation), turn.situation)
