@@ -111,7 +111,7 @@ BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
 WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look")  # about nothing in particular
 ACTIVITIES: Forms = {
     **dict.fromkeys(WHOLE_ACTIVITIES, ()),
-    **dict.fromkeys(("blame", "doubt", *SETTLING_STEPS), (SUBJECT_ARGUMENT,)),
+    **dict.fromkeys(("blame", "clash", "doubt", *SETTLING_STEPS), (SUBJECT_ARGUMENT,)),
     "resume": (BEGUN_ARGUMENT,),
 }
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
@@ -334,8 +334,9 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
         **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
-        **{(name, 0): () for name in ("hand_full", "robot_lost", "map_contradicted", "stage_attained")},
+        **{(name, 0): () for name in ["hand_full", "robot_lost", "map_contradicted", "stage_attained", "unplanned"]},
         ("begun", 1): (BEGUN_ARGUMENT,),
+        ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
         ("planned", 1): (STEP_ARGUMENT,),
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),

@@ -32,6 +32,7 @@ from utak.planner.oracles.problem import PlacedGoal
 from utak.planner.per_model import PerModel
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
+from utak.planner.stages import Stage
 from utak.planner.step_rules import refusal
 from utak.planner.steps import steps_of
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
@@ -74,6 +75,9 @@ class Activities:
         self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
         self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
+        self._pursued: Fact | None = None  # the goal that the newest command pursues by itself
+        self._held: frozenset[Fact] = frozenset()  # the goals that held then
+        self._undid: set[tuple[Fact, Fact]] = set()  # goals that were pursued by themselves, with those that this undid
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
         """Return the function that tells whether a goal for an object holds in a situation."""
@@ -91,6 +95,8 @@ class Activities:
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
         self._own.note(turn)
+        held = frozenset(filter(self.holds(turn.situation), turn.goals.values()))
+        self._undid |= {(self._pursued, goal) for goal in self._held - held if self._pursued is not None}
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = proved = nothing_to_do("all goals hold")
@@ -103,6 +109,7 @@ class Activities:
             if decision.command is not None:
                 agenda.record()
                 self._note_step(found, decision, turn)
+                self._held, self._pursued = held, turn.goals.get(found.subject) if found.kind == "pursue" else None
                 return decision
             agenda.note(found, decision)
             if decision.verdict not in (None, TaskVerdict.DONE):
@@ -165,6 +172,9 @@ class Activities:
         model = turn.situation.model
         yield from (f"stage_goal({name},{number})" for number, name in enumerate(turn.goals, 1))
         yield from _unknown(turn)
+        names = {goal: name for name, goal in turn.goals.items()}
+        pairs = [(names[one], names[other]) for one, other in self._undid if {one, other} <= names.keys()]
+        yield from (f"undid({one},{other})" for one, other in sorted(pairs))
         yield from (f"begun({name})" for name, (is_begun, _) in self._resumed.items() if is_begun(turn.situation))
         if not turn.stage.goals and self._doubt_of_done(turn.situation):
             yield "constraints_doubtful"
@@ -173,6 +183,7 @@ class Activities:
             "stages_attained": not turn.stage.goals,
             "regions_forbidden": any(True for _ in avoidances(turn.situation.task)),
             "hand_full": model.held is not None,
+            "unplanned": self.errands.intention.attempt is not None,
             "robot_lost": model.lost,
             "map_contradicted": model.anew and model.shaken,
         }
@@ -195,6 +206,7 @@ class Activities:
             "errand": lambda: self.errands.next(turn),
             "settle": self._nothing_settles,
             "go": lambda: self._go(turn),
+            "clash": lambda: _clash(goals[0], stage),
             "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
             "blame": lambda: _added(last, self._clearer.blame(turn.situation)),
@@ -316,6 +328,12 @@ def _done_by_rules(decision: Decision, situation: Situation) -> Decision:
         return decision
     refused = refusal(steps_of(decision, situation.model), situation)
     return Decision(None, f"{decision.why}; {refused}", TaskVerdict.LIMIT) if refused else decision
+
+
+def _clash(goal: Fact, stage: Stage) -> Decision:
+    """Return the verdict `limit` for a goal whose pursuit undoes another one, where no plan attains both."""
+    why = f"no plan that attains {stage} was found, and the pursuit of {goal} undoes another goal"
+    return Decision(None, why, TaskVerdict.LIMIT)
 
 
 def _added(verdict: Decision, found: Decision) -> Decision:

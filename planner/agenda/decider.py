@@ -154,7 +154,8 @@ class Decider:
             first = self._turned.setdefault(turn.stage, decision)
         decision = self._whole(other, turn)
         if decision.verdict in PROOFS and first.verdict != TaskVerdict.IMPOSSIBLE:
-            return replace(decision, verdict=first.verdict)  # it is not proved for both
+            why = f"{first.why}; the other way round, {decision.why}"
+            return replace(decision, why=why, verdict=first.verdict)  # it is not proved for both
         return decision
 
     def _whole(self, stage: Stage, turn: StageTurn) -> Decision:

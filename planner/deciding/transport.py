@@ -9,7 +9,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import shapely
 
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import At, End, Inside
@@ -25,8 +24,8 @@ from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.verification import look_before_grasp, look_for_more
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
-from utak.planner.goals.corner_goal import approach_for_goals, corner_may_move
-from utak.planner.goals.joint import conflicting_goals, is_apart_from_start, too_far_reason
+from utak.planner.goals.corner_goal import approach_for_goals
+from utak.planner.goals.joint import conflict
 from utak.planner.goals.object_goals import goal_placement
 from utak.planner.goals.origins import Origins
 from utak.planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
@@ -38,7 +37,7 @@ from utak.planner.situation import Situation
 from utak.planner.skills.measure_size import SizeEstimator, least_outline
 from utak.planner.skills.press import Presser
 from utak.planner.skills.try_passage import PassageTrials
-from utak.planner.stages import FIXED_GOALS, ORIGIN_GOALS, Stage, is_at_start
+from utak.planner.stages import ORIGIN_GOALS, Stage
 from utak.planner.subgoal_kind import SubgoalKind
 
 SHARE_TARGET = "share"  # the ends of pushes that give each side of a passage its share of what is missing
@@ -154,26 +153,7 @@ class Transporter:
 
     def conflict(self, stage: Stage, situation: Situation) -> Decision:
         """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once."""
-        for x in sorted({str(goal.args[0]) for goal in stage.carried}):
-            goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
-            node = situation.object_of(x)
-            if len(goals) < 2 or node is None or node.polygon is None:
-                continue
-            shape, began = to_view_frame(node.polygon, situation), self.origin_of(x, node, situation)
-            lands = {str(goal): self.place(goal, node, began, situation) for goal in goals}
-            regions = {str(goal): end.polygon for goal in goals for end in _where_task_says(goal, lands[str(goal)])}
-            length = 2 * float(shapely.minimum_bounding_radius(shape))
-            if far := too_far_reason(goals, situation, length, regions):
-                return impossible(f"{stage} cannot be attained: {far}", far, unless=None)
-            if any(corner_may_move(goal, situation) for goal in goals):
-                continue
-            found = conflicting_goals(list(lands.values()), shape)
-            if found is not None:
-                one, other = (goals[number] for number in found)
-                why = f"{one} and {other} cannot hold at once: their places are too far apart"
-                said = {str(one), str(other)} <= regions.keys() or is_apart_from_start((one, other), began, situation)
-                return impossible(why, f"no place lies in both {one} and {other}", unless=None if said else "")
-        return nothing_to_do("no two goals are known to contradict each other")
+        return conflict(stage, situation, self.place, self.origin_of)
 
     def _freed(self, decision: Decision, goal: Fact, turn: StageTurn) -> Decision:
         """Return a decision; in its place the push after which the held object no longer shuts the robot in."""
@@ -372,12 +352,6 @@ def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision | None:
     if isinstance(advice, Act):
         return turn.act(advice, why)
     return turn.prepare(advice)
-
-
-def _where_task_says(goal: Fact, land: Placement) -> list[Inside]:
-    """Return the region in which an object lies where a goal holds, if the task says where, whatever is found."""
-    said = goal.name in FIXED_GOALS or is_at_start(goal)
-    return [end for end in land.must_reach.ends().values() if isinstance(end, Inside)] if said else []
 
 
 def _look_at(node: Node, turn: StageTurn) -> Decision | None:

@@ -1,7 +1,8 @@
 """Goals that cannot hold at once, by the regions in which an object lies when each of them holds."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations, product
 from typing import Any
 
@@ -11,16 +12,81 @@ from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, shape_at_pose
 from utak.kb.language.goal_words import CORNER_NAMES
 from utak.kb.language.terms import Fact
-from utak.planner.goals.placement import Placement
+from utak.kb.task.described import BESIDE_DISTANCE
+from utak.kb.world.model import Node
+from utak.planner.decision import Decision, impossible, nothing_to_do
+from utak.planner.goals.corner_goal import corner_may_move
+from utak.planner.goals.placement import KnownEnds, Placement, to_view_frame
 from utak.planner.goals.robot_goals import along, corner_side, hidden_from
 from utak.planner.screen.projection import dilate
 from utak.planner.situation import Situation
-from utak.planner.stages import DOOR_GOALS, is_at_start
+from utak.planner.stages import DOOR_GOALS, FIXED_GOALS, TOUCHING_GOALS, Stage, is_at_start
 
+PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
+OriginFunction = Callable[[str, Node, Situation], XY]
 REGION_ROUNDING = 1e-6  # squares, or squares of area, that rounding errors of shapely may make (convention)
 CORNER_REACH = (1.0, 1.0)  # squares east and north of a corner within which the robot is at it (meaning of the goal)
 CLEAR_OF_DOORS = 2  # squares between a doorway and what is in the midst of a room, at least; a convention
 OPPOSITE_CORNER = dict(zip(CORNER_NAMES, reversed(CORNER_NAMES), strict=True))
+
+
+def conflict(stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction) -> Decision:
+    """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; else nothing.
+
+    Parameters
+    ----------
+    stage : the goals.
+    situation : what is believed.
+    place : tells where a goal holds for an object that began at a point (x, y) in squares, map frame.
+    origin : tells where the object of a parameter began.
+    """
+    for x in sorted({str(goal.args[0]) for goal in stage.carried}):
+        goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
+        node = situation.object_of(x)
+        if len(goals) < 2 or node is None or node.polygon is None:
+            continue
+        shape, began = to_view_frame(node.polygon, situation), origin(x, node, situation)
+        lands = {str(goal): place(goal, node, began, situation) for goal in goals}
+        regions = {str(goal): end.polygon for goal in goals for end in _where_task_says(goal, lands[str(goal)])}
+        length = 2 * float(shapely.minimum_bounding_radius(shape))
+        if far := too_far_reason(goals, situation, length, regions):
+            return impossible(f"{stage} cannot be attained: {far}", far, unless=None)
+        if any(corner_may_move(goal, situation) for goal in goals):
+            continue
+        kept = {}  # by goal beside a thing: the goal of that thing, in words
+        for goal in goals:
+            for own, other, end in _of_thing_beside(goal, stage, situation, place, origin):
+                kept[goal] = str(own)
+                lands[str(goal)] = beside_what_is_kept(lands[str(goal)], end, other, length)
+        found = conflicting_goals(list(lands.values()), shape)
+        if found is not None:
+            one, other = (goals[number] for number in found)
+            besides = dict.fromkeys(kept[goal] for goal in (one, other) if goal in kept)
+            holds = f" where {' and '.join(besides)} holds" if besides else ""
+            why = f"{one} and {other} cannot hold at once{holds}: their places are too far apart"
+            said = {str(one), str(other)} <= regions.keys() or is_apart_from_start((one, other), began, situation)
+            return impossible(why, f"no place lies in both {one} and {other}", unless=None if said else "")
+    return nothing_to_do("no two goals are known to contradict each other")
+
+
+def _of_thing_beside(
+    goal: Fact, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction
+) -> Iterator[tuple[Fact, Any, Placement]]:
+    """Yield a goal of the thing beside which a goal asks for another one, with its outline and where that holds."""
+    # None that is about a third thing.
+    name = str(goal.args[1]) if goal.name in TOUCHING_GOALS else ""
+    node = situation.object_of(name)
+    if node is not None and node.polygon is not None:
+        own = (one for one in stage.carried if str(one.args[0]) == name)
+        for one in (one for one in own if one.name not in TOUCHING_GOALS or is_at_start(one)):
+            there = place(one, node, origin(name, node, situation), situation)
+            yield one, to_view_frame(node.polygon, situation), there
+
+
+def _where_task_says(goal: Fact, land: Placement) -> list[Inside]:
+    """Return the region in which an object lies where a goal holds, if the task says where, whatever is found."""
+    said = goal.name in FIXED_GOALS or is_at_start(goal)
+    return [end for end in land.must_reach.ends().values() if isinstance(end, Inside)] if said else []
 
 
 def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
@@ -37,6 +103,16 @@ def _all_ends(placement: Placement) -> Sequence[End]:
     if placement.some:
         return tuple(placement.must_reach.ends().values())
     return (*placement.ends.values(), *placement.loose.values())
+
+
+def beside_what_is_kept(placement: Placement, kept: Placement, kept_shape: Any, length: float) -> Placement:
+    """Return a placement beside a thing that shall lie as another goal says, for what is so long, in squares."""
+    # The same while it is not known where that goal holds.
+    ends = () if kept.missing else _all_ends(kept)
+    if not ends:
+        return placement
+    region = shapely.union_all([enclosing_region(end, kept_shape) for end in ends]).buffer(length + BESIDE_DISTANCE)
+    return replace(placement, must_reach=KnownEnds({"beside": Inside(region)}))
 
 
 def too_far_reason(

@@ -15,6 +15,7 @@ from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import NO_ROOM
+from utak.planner.goals.joint import OriginFunction, PlaceFunction
 from utak.planner.goals.placement import Placement, meets_any_end, to_view_frame
 from utak.planner.goals.robot_goals import Destination, jointly, robot_stands_on
 from utak.planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
@@ -24,8 +25,6 @@ from utak.planner.tasking.history import DoneErrands
 
 NOTHING_DONE = DoneErrands()  # of a run in which nothing was done
 RULED_ENCODING = "task"  # the encoding of task plans, without `.lp`
-PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
-OriginFunction = Callable[[str, Node, Situation], XY]
 DestinationFunction = Callable[[Fact, Situation], Destination]
 
 

@@ -5,12 +5,19 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+import utak
 from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import BESIDE_A_THING, situation_of
 from utak.geometry.manipulation.goals import At, End, InCorner, Inside, is_goal_met, shape_at_pose
 from utak.geometry.motion.se2 import Pose
-from utak.planner.goals.joint import conflicting_goals, enclosing_region, is_apart_from_start, too_far_reason
+from utak.planner.goals.joint import (
+    beside_what_is_kept,
+    conflicting_goals,
+    enclosing_region,
+    is_apart_from_start,
+    too_far_reason,
+)
 from utak.planner.goals.placement import KnownEnds, Placement
 
 THING = shapely.box(3, 3, 6, 5)
@@ -128,3 +135,32 @@ def test_where_the_robot_woke_is_not_in_the_next_room(rows: list[str], goals: st
     situation = situation_of(known_model(rows))
     facts = facts_from_text(asked.get(goals, goals))
     assert is_apart_from_start(facts, situation.model.frame.origin, situation) == found
+
+
+def test_what_shall_be_beside_a_thing_is_where_that_shall_be() -> None:
+    """The thing beside may be brought elsewhere, but not so far that its own goal does not hold."""
+    kept, far = Inside(shapely.box(0, 0, 6, 6)), Inside(shapely.box(20, 0, 40, 20))
+    beside = Placement({"e": At(Pose(0.0, 0.0, 0.0))}, some=True)  # without a place that it must be at
+    assert conflicting_goals([beside, placement(far)], THING) is None
+    for length, found in ((4.0, (0, 1)), (25.0, None)):
+        near = beside_what_is_kept(beside, placement(kept), shapely.box(0, 0, 3, 3), length)
+        assert conflicting_goals([near, placement(far)], THING) == found
+    unknown = placement(kept, missing="more is to be seen")
+    assert beside_what_is_kept(beside, unknown, THING, 4.0) is beside
+
+
+@pytest.mark.long
+def test_a_robot_does_not_go_to_and_fro_between_goals_that_contradict_each_other() -> None:
+    """A thing beside one that is kept where the robot woke is not in the next room, and that is told in the end."""
+    inside = "(2 2, 22 2, 22 9, 24 9, 24 2, 44 2, 44 22, 24 22, 24 15, 22 15, 22 22, 2 22, 2 2)"
+    scenario = utak.Scenario.from_text(
+        world=f"""table(46, 24). verge("POLYGON ((0 0, 0 24, 46 24, 46 0, 0 0), {inside})").
+        object(x, c, "POLYGON ((14 14, 17 14, 17 17, 14 17, 14 14))").
+        object(y, d, "POLYGON ((4 4, 9 4, 9 7, 4 7, 4 4))"). utak("POINT (8.5 11.5)", 0).""",
+        start="object(x). shape(x, square). object(y). shape(y, brick).",
+        goal="at(y, start). in(x, room(next)). beside(x, y).",
+    )
+    episode = utak.Run(scenario, max_steps=150).finish()
+    assert episode.verdict in ("impossible", "possible_if")
+    assert "cannot hold at once where in(x,room(next)) holds: their places are too far apart" in episode.reason
+    assert episode.verdict == "impossible" or "it may be possible if" in episode.reason
