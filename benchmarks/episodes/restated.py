@@ -1,0 +1,135 @@
+"""How often a least price alone makes the choices that encodings of the planner made in recorded episodes.
+
+    python -m benchmarks.unchanged write FOLDER --count 100
+    python -m benchmarks.episodes.restated FOLDER
+
+Each encoding is restated in the shortest way that is known: the least of prices that stand in its facts. Printed are,
+for each encoding, the decisions and those in which the restatement chooses the same. Where these are all, the encoding
+does no more in these runs than to sort, and is there for what users' rules say in it.
+"""
+
+import argparse
+import json
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from utak.kb.language.atoms import atom_parts
+from utak.kb.reasoning.encodings import encoding_facts
+from utak.planner.navigation.subgoals import PLANNER_ASP
+
+Facts = Mapping[str, Sequence[Sequence[str]]]  # the arguments of the facts of each name
+LOOK_PRICES = {"explore": 40, "inspect": 40, "pass": 60, "settle": 200}  # tenths of squares, as in aims.lp
+SWITCH = {"aims": 30, "walks": 200}  # what a switch costs, as in these encodings
+RISK, CLEAR = 20, 100  # hundredths of squares for a percent of risk, and the clearance that costs nothing (walks.lp)
+
+
+def cheapest_aim(facts: Facts) -> str:
+    """Return the subgoal of the least expected price; one that attains the goal first."""
+    chances, besides = dict(facts.get("chance", ())), dict(facts.get("besides", ()))
+    last = {number for (number,) in facts.get("last", ())}
+
+    def price(aim: Sequence[str]) -> tuple[Any, ...]:
+        number, kind, way = aim
+        cost = int(way) + int(besides.get(number, 0)) + LOOK_PRICES.get(kind, 0)
+        switch = SWITCH["aims"] if last and number not in last else 0
+        return kind != "attain", 100 * cost // int(chances.get(number, 100)) + switch, int(number)
+
+    return f"choose({min(facts['aim'], key=price)[0]})"
+
+
+def cheapest_halt(facts: Facts) -> str:
+    """Return the halt of the fewest moves for each thing that is to be expected there."""
+    counted = encoding_facts(PLANNER_ASP / "priors_of_walls.lp", "counted_wall", 3)
+    chances = {(kind, size): int(chance) for kind, size, chance in counted}
+    value: Counter[str] = Counter()
+    for halt, kind, size, number in facts.get("tells", ()):
+        value[halt] += int(number) * chances[kind, size]
+    halts = [halt for halt in facts["halt"] if value[halt[0]]]
+    number, *_ = min(halts, key=lambda one: (1_000_000 * int(one[2]) // value[one[0]], int(one[1]), int(one[0])))
+    return f"feel({number})"
+
+
+def cheapest_way(facts: Facts) -> str:
+    """Return the way, of those pulled tight, of the least length with its risk and clearance."""
+    last = {number for (number,) in facts.get("last", ())}
+
+    def price(way: Sequence[str]) -> tuple[int, int]:
+        number, length, clearance, risk = way
+        switch = SWITCH["walks"] if last and number not in last else 0
+        return int(length) + RISK * int(risk) + max(0, CLEAR - int(clearance)) + switch, int(number)
+
+    return f"walked({min(facts['tight'], key=price)[0]})"
+
+
+def first_activity(facts: Facts) -> str:
+    """Return the first activity, in one fixed order, that something given asks for and that came to nothing yet."""
+    came = {activity for activity, _ in facts.get("came_to", ())}
+    goals = [goal for goal, _ in facts.get("stage_goal", ())]
+    offered = [
+        *(["release"] if "robot_lost" in facts and "hand_full" in facts else []),
+        *(["keep"] if "regions_forbidden" in facts else []),
+        *(f"resume({name})" for (name,) in facts.get("begun", ())),
+        *(["agree"] if goals else []),
+        *(name for (name,) in facts.get("planned", ())),
+        "errand",
+        *(f"pursue({goal})" for goal in goals),
+        *(["go"] if "own_goals" in facts else []),
+        "wish",
+        "look",
+        "settle",
+    ]
+    return next((f"do({one})" for one in offered if one not in came), "")
+
+
+def cheapest_errand(facts: Facts) -> str:
+    """Return the errand to a goal's place of the least estimate, as the first step."""
+    fulfils = {(mover, place) for mover, place, _ in facts.get("fulfils", ())}
+    estimates = [one for one in facts.get("estimate", ()) if (one[0], one[2]) in fulfils]
+    if not estimates:
+        return ""
+    mover, _, place, _ = min(estimates, key=lambda one: int(one[3]))
+    return f"occurs(arrive({place}),0)" if mover == "utak" else f"occurs(carry({mover},{place}),0)"
+
+
+RESTATED: Mapping[str, Callable[[Facts], str]] = {
+    "aims": cheapest_aim,
+    "feel": cheapest_halt,
+    "walks": cheapest_way,
+    "agenda": first_activity,
+    "task": cheapest_errand,
+}
+
+
+def decisions(lines: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, Facts, Sequence[str]]]:
+    """Yield the decisions of an episode that are written in full: the encoding, what it was given, its answer."""
+    for line in lines:
+        for encoding, *rest in line["belief"].get("solved", ()):
+            if len(rest) > 1 and rest[1] and encoding in RESTATED:
+                facts: dict[str, list[Sequence[str]]] = {}
+                for name, arguments in map(atom_parts, rest[0]):
+                    facts.setdefault(name, []).append(arguments)
+                yield encoding, facts, rest[1]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print a line for each encoding."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="folders with episodes, *.jsonl")
+    made: Counter[str] = Counter()
+    same: Counter[str] = Counter()
+    for log in sorted(log for folder in parser.parse_args(arguments).folders for log in folder.rglob("*.jsonl")):
+        lines = [line for line in map(json.loads, log.read_text().splitlines()) if "step" in line]
+        for encoding, facts, answer in decisions(lines):
+            made[encoding] += 1
+            same[encoding] += RESTATED[encoding](facts) in answer
+    print(f"{'encoding':>10}{'decisions':>11}{'the same':>10}")
+    for encoding in RESTATED:
+        print(f"{encoding:>10}{made[encoding]:11}{same[encoding]:10}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
