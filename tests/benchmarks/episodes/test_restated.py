@@ -1,4 +1,4 @@
-"""The restatements of encodings as a least price: what they choose, and that they are counted against what was chosen."""
+"""The restatements of encodings as a least price: what they choose, and how they are counted."""
 
 import json
 from pathlib import Path
