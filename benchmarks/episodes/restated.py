@@ -1,4 +1,4 @@
-"""How often a least price alone makes the choices that encodings of the planner made in recorded episodes.
+"""Encodings of the planner restated as a least price: how often that makes the same choices in recorded episodes.
 
     python -m benchmarks.unchanged write FOLDER --count 100
     python -m benchmarks.episodes.restated FOLDER
@@ -20,13 +20,13 @@ from utak.kb.language.atoms import atom_parts
 from utak.kb.reasoning.encodings import encoding_facts
 from utak.planner.navigation.subgoals import PLANNER_ASP
 
-Facts = Mapping[str, Sequence[Sequence[str]]]  # the arguments of the facts of each name
+FactTable = Mapping[str, Sequence[Sequence[str]]]  # the arguments of the facts of each name
 LOOK_PRICES = {"explore": 40, "inspect": 40, "pass": 60, "settle": 200}  # tenths of squares, as in aims.lp
 SWITCH = {"aims": 30, "walks": 200}  # what a switch costs, as in these encodings
-RISK, CLEAR = 20, 100  # hundredths of squares for a percent of risk, and the clearance that costs nothing (walks.lp)
+RISK_PRICE, FREE_CLEARANCE = 20, 100  # hundredths of squares: for a percent of risk; what costs nothing (walks.lp)
 
 
-def cheapest_aim(facts: Facts) -> str:
+def cheapest_aim(facts: FactTable) -> str:
     """Return the subgoal of the least expected price; one that attains the goal first."""
     chances, besides = dict(facts.get("chance", ())), dict(facts.get("besides", ()))
     last = {number for (number,) in facts.get("last", ())}
@@ -40,7 +40,7 @@ def cheapest_aim(facts: Facts) -> str:
     return f"choose({min(facts['aim'], key=price)[0]})"
 
 
-def cheapest_halt(facts: Facts) -> str:
+def cheapest_halt(facts: FactTable) -> str:
     """Return the halt of the fewest moves for each thing that is to be expected there."""
     counted = encoding_facts(PLANNER_ASP / "priors_of_walls.lp", "counted_wall", 3)
     chances = {(kind, size): int(chance) for kind, size, chance in counted}
@@ -52,19 +52,19 @@ def cheapest_halt(facts: Facts) -> str:
     return f"feel({number})"
 
 
-def cheapest_way(facts: Facts) -> str:
+def cheapest_way(facts: FactTable) -> str:
     """Return the way, of those pulled tight, of the least length with its risk and clearance."""
     last = {number for (number,) in facts.get("last", ())}
 
     def price(way: Sequence[str]) -> tuple[int, int]:
         number, length, clearance, risk = way
         switch = SWITCH["walks"] if last and number not in last else 0
-        return int(length) + RISK * int(risk) + max(0, CLEAR - int(clearance)) + switch, int(number)
+        return int(length) + RISK_PRICE * int(risk) + max(0, FREE_CLEARANCE - int(clearance)) + switch, int(number)
 
     return f"walked({min(facts['tight'], key=price)[0]})"
 
 
-def first_activity(facts: Facts) -> str:
+def first_activity(facts: FactTable) -> str:
     """Return the first activity, in one fixed order, that something given asks for and that came to nothing yet."""
     came = {activity for activity, _ in facts.get("came_to", ())}
     goals = [goal for goal, _ in facts.get("stage_goal", ())]
@@ -84,7 +84,7 @@ def first_activity(facts: Facts) -> str:
     return next((f"do({one})" for one in offered if one not in came), "")
 
 
-def cheapest_errand(facts: Facts) -> str:
+def cheapest_errand(facts: FactTable) -> str:
     """Return the errand to a goal's place of the least estimate, as the first step."""
     fulfils = {(mover, place) for mover, place, _ in facts.get("fulfils", ())}
     estimates = [one for one in facts.get("estimate", ()) if (one[0], one[2]) in fulfils]
@@ -94,7 +94,7 @@ def cheapest_errand(facts: Facts) -> str:
     return f"occurs(arrive({place}),0)" if mover == "utak" else f"occurs(carry({mover},{place}),0)"
 
 
-RESTATED: Mapping[str, Callable[[Facts], str]] = {
+RESTATED: Mapping[str, Callable[[FactTable], str]] = {
     "aims": cheapest_aim,
     "feel": cheapest_halt,
     "walks": cheapest_way,
@@ -103,7 +103,7 @@ RESTATED: Mapping[str, Callable[[Facts], str]] = {
 }
 
 
-def decisions(lines: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, Facts, Sequence[str]]]:
+def decisions(lines: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, FactTable, Sequence[str]]]:
     """Yield the decisions of an episode that are written in full: the encoding, what it was given, its answer."""
     for line in lines:
         for encoding, *rest in line["belief"].get("solved", ()):
