@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.goals import shape_at_pose
 from utak.geometry.manipulation.plan_carrying import At, Inside
 from utak.geometry.motion.se2 import Pose
@@ -48,9 +49,13 @@ def touching(shape: Any, target: Any, name: str, stays_free: bool = False) -> Pl
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
     level = ((x0 + x1) - (west + east)) / 2, ((y0 + y1) - (south + north)) / 2
-    level = (float(np.rint(level[0])), float(np.rint(level[1])))
-    shifts = {"east": (x1 - west, level[1]), "north": (level[0], y1 - south)}
-    shifts |= {"west": (x0 - east, level[1]), "south": (level[0], y0 - north)}
+    along = {"": (float(np.rint(level[0])), float(np.rint(level[1])))}
+    if stays_free:  # a target beside walls leaves no room for what is longer to reach past it on both sides
+        along |= {"_low": (x0 - west, y0 - south), "_high": (x1 - east, y1 - north)}
+    shifts: dict[str, XY] = {}
+    for where, (dx, dy) in along.items():
+        shifts |= {f"east{where}": (x1 - west, dy), f"north{where}": (dx, y1 - south)}
+        shifts |= {f"west{where}": (x0 - east, dy), f"south{where}": (dx, y0 - north)}
     ends = {f"{name}_{side}": At(Pose(dx, dy, 0.0)) for side, (dx, dy) in shifts.items()}
     near = target.envelope.buffer(min(east - west, north - south) + BESIDE_AXIS_DISTANCE, join_style="mitre")
     covers = stays_free and shape.intersection(target).area > 0.0

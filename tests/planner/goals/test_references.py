@@ -77,6 +77,7 @@ bbbbbbbbbbbbbbbbbbbbbbbbbb
         [
             "at(utak, x). at(utak, start).",
             "at(utak, x). at(utak, y).",
+            "at(utak, y). at(utak, corner(northwest)).",  # longer than the room beside the corner on either side of it
             "beside(x, y). at(x, corner(southwest)).",
             "circled(utak, x).",
         ],
