@@ -192,6 +192,7 @@ class Knowledge:
             leeway=memory.leeway,
             standing=standing(memory),
             held=memory.in_hand,
+            may_hold=memory.may_hold,
             imagined=self._completions,
             touch=impression.touch,
             felt=dict(self._touches.colours),

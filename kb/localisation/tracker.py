@@ -94,7 +94,8 @@ class Tracker:
             return None
         looked = state.observations[-len(state.looks) :]  # since a map begun anew when lost, the newest alone
         ways = [(look.away[0] - away[0], look.away[1] - away[1]) for look in state.looks]
-        self.state = replace(former, unsteady=former.unsteady or state.unsteady, removed=state.removed)
+        unsteady = former.unsteady or state.unsteady
+        self.state = replace(former, unsteady=unsteady, removed=state.removed, may_hold=state.may_hold)
 
         def clashes(point: Position) -> int:
             """Return how many fields of all looks contradict the map if the newest was made at a point."""
@@ -137,7 +138,7 @@ class Tracker:
         """Explain and integrate the impression that followed a command; `state` is replaced."""
         ranges = count_ranges(impression.retina)
         if isinstance(command, Release):
-            self.state = replace(self.state, in_hand=None)
+            self.state = replace(self.state, in_hand=None, may_hold=False)
         self._prepare(ObservedSituation(self.state, command, ranges))
         return self._accommodate(ObservedSituation(self.state, command, ranges))
 
@@ -368,7 +369,8 @@ def _begun(state: TrackerState, made: Iterable[Observation], former: TrackerStat
     """Return a tracker with an empty map at the believed place; `made`: the observations whose places are kept."""
     been = (*state.been, *(observation.place for observation in made))
     begun = TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been)
-    return Tracker(replace(begun, former=former, unsteady=unsteady, removed=state.removed))
+    may_hold = state.may_hold or state.in_hand is not None
+    return Tracker(replace(begun, former=former, unsteady=unsteady, removed=state.removed, may_hold=may_hold))
 
 
 def _before_contradictions(state: TrackerState) -> TrackerState | None:

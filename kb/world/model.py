@@ -102,6 +102,7 @@ class WorldModel:
     kinds: Kinds  # What each region is taken for
     objects: tuple[Node, ...]  # The isolated objects, and what may be one, by number
     held: str | None = None  # The name of the object in hand
+    may_hold: bool = False  # Whether something may be in hand that was grasped before the map was begun
     missing: tuple[str, ...] = ()  # The names of things that are no longer where they lay, and were not seen since
     looked_from: frozenset[Square] = frozenset()  # The squares on which an impression was received, map frame
     # The same since an impression contradicted what is believed; all of them while none did

@@ -182,9 +182,9 @@ class Activities:
             "own_goals": bool(turn.stage.own),
             "stages_attained": not turn.stage.goals,
             "regions_forbidden": any(True for _ in avoidances(turn.situation.task)),
-            "hand_full": model.held is not None,
+            "hand_full": model.held is not None or model.may_hold,
             "unplanned": self.errands.intention.attempt is not None,
-            "robot_lost": model.lost,
+            "robot_lost": model.lost or model.may_hold,
             "map_contradicted": model.anew and model.shaken,
         }
         yield from (name for name, holds in given.items() if holds)
@@ -317,7 +317,7 @@ def _rules_at(places: Sequence[str]) -> str:
 
 def _put_down(situation: Situation) -> Decision:
     """Return the release of what a robot holds that is lost."""
-    held = situation.model.held
+    held = situation.model.held or "what may be in hand"
     why = f"{held} is released, because the robot does not know where it is: nothing looks as expected"
     return Decision(Release(), why)
 

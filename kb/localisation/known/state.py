@@ -63,6 +63,7 @@ class TrackerState:
     # All objects that were ever held, by name, map frame
     held_objects: Mapping[str, HeldObject] = field(default_factory=dict)
     in_hand: str | None = None  # the name of the object in the hand; None when the hand is empty
+    may_hold: bool = False  # whether what was in hand on the map of before may be there still; then in_hand is None
     # Number of unexplained fields of each of the last observations, oldest first; 4 at most
     residuals: tuple[int, ...] = ()
     # The number of the first observation since one left fields unexplained; 0 while none did

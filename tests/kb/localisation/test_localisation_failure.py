@@ -10,7 +10,7 @@ import shapely
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of
 from tests.kb.localisation.test_tracker import ROOM
-from utak.kb.body import Impression, Move, Release
+from utak.kb.body import Impression, Move, Push, Release
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import Hypothesis
@@ -146,6 +146,21 @@ def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
     assert not model.anew and model.interrupted
     assert not model.lost
     assert not knowledge.memory.held_objects
+
+
+@pytest.mark.long
+def test_who_gets_lost_with_something_in_hand_puts_down_what_it_may_be() -> None:
+    knowledge = walked(ROOM, [(2, 0), (0, 3)]).knowledge
+    thing = shapely.box(4, 2, 8, 4)
+    knowledge.tracker.grasp(HeldObject("o1", thing, thing))
+    shut_in = impression(lambda i, j: (i, j) != (0, 0), (0, 0))
+    model, accommodated = knowledge.perceive(Push(1.0, 0.0), shut_in)
+    assert accommodated.explanation.how == "lost"
+    assert model.held is None
+    assert model.may_hold
+    assert isinstance(Decider(Task({}, (), ())).decide(model, knowledge.memory.track).command, Release)
+    model, _ = knowledge.perceive(Release(), shut_in)
+    assert not model.may_hold
 
 
 @pytest.mark.long

@@ -6,7 +6,7 @@ import shapely
 
 from utak.geometry.shapes.fit import fit_shapes
 from utak.kb.mapping.patch import Patch, patch_of_polygon
-from utak.kb.objects.shape_fit import measure_whole
+from utak.kb.objects.shape_fit import ShapeMeasurement, measure_whole
 from utak.kb.perception.interpretation import classify_shapes
 from utak.kb.world.objects import shape_facts
 
@@ -49,6 +49,15 @@ def test_what_is_of_a_class_has_the_outline_of_its_class(rows: list[str]) -> Non
     assert not classify_shapes(shape_facts({"o1": measured}))[1]
     assert patch_of_polygon(measured.polygon).squares() == drawn.squares()
     assert fit_shapes(drawn.mask)[0].misfit == 0
+
+
+def test_squares_that_are_open_give_the_outline_while_they_are_fewer_than_the_class_leaves_wrong() -> None:
+    others = ("l_shape", "triangle", "square", "disc", "u_shape", "brick")
+    fits = (("t_shape", 39), *((one, 44) for one in others))
+    traced = [
+        classify_shapes(shape_facts({"o1": ShapeMeasurement(fits, None, count, full=88)}))[1] for count in (29, 60)
+    ]
+    assert traced == [{"o1"}, set()]
 
 
 def test_squares_that_touch_at_a_corner_alone_have_no_outline() -> None:
