@@ -41,11 +41,11 @@ def total_contradictions(
             for k in range(entries):
                 if statement and weight[n, k] > 0:
                     statements[y + rows[n, k], x + columns[n, k]] |= statement
+    for n in range(len(exempt)):
+        _withdraw(statements, exempt[n, 0] - west, exempt[n, 1] - south, exempt[n, 2])
     wrong = 0
     for y in range(statements.shape[0]):
         for x in range(width):
-            if statements[y, x] and _within(exempt, x + 0.5 + west, y + 0.5 + south):
-                statements[y, x] = 0
             wrong += statements[y, x] == SAID_FREE | SAID_OCCUPIED
     for observation in range(len(corners)):
         x, y = corners[observation, 0] - west, corners[observation, 1] - south
@@ -62,9 +62,9 @@ def total_contradictions(
 
 
 @compiled
-def _within(exempt: NDArray[np.float64], x: float, y: float) -> bool:
-    """Return whether a point lies on one of some discs; their edges belong to them. False when there are none."""
-    found = False
-    for n in range(len(exempt)):
-        found = found or math.hypot(x - exempt[n, 0], y - exempt[n, 1]) <= exempt[n, 2]
-    return found
+def _withdraw(statements: NDArray[np.uint8], x: float, y: float, reach: float) -> None:
+    """Withdraw in place what is said of the squares whose middles lie on a disc; its edge belongs to it."""
+    for row in range(max(math.floor(y - reach), 0), min(math.floor(y + reach) + 1, statements.shape[0])):
+        for column in range(max(math.floor(x - reach), 0), min(math.floor(x + reach) + 1, statements.shape[1])):
+            if math.hypot(column + 0.5 - x, row + 0.5 - y) <= reach:
+                statements[row, column] = 0

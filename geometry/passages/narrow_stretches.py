@@ -12,13 +12,13 @@ TOUCH_TOLERANCE = 1e-6  # squares; convention: what an area loses at its edge, s
 def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[int, int]]:
     """Return the squares (column, row) between lines from wall to wall nearly as short as a passage is wide."""
     # The set is empty when the passage is none of this floor.
-    limit = (passage.width + spare) ** 2
-    edge_of = {edge: k for k, edge in enumerate(map(tuple, walls.corners[walls.edges].reshape(-1, 4).tolist()))}
+    edges = np.flatnonzero(walls.length <= (passage.width + spare) ** 2)
+    ends = map(tuple, walls.corners[walls.edges[edges]].reshape(-1, 4).tolist())
+    edge_of = dict(zip(ends, edges.tolist(), strict=True))
     short_edges_of: dict[int, list[int]] = {}
-    for edge, sides in enumerate(walls.sides.tolist()):
-        if walls.length[edge] <= limit:
-            for triangle in sides:
-                short_edges_of.setdefault(triangle, []).append(edge)
+    for edge, sides in zip(edges.tolist(), walls.sides[edges].tolist(), strict=True):
+        for triangle in sides:
+            short_edges_of.setdefault(triangle, []).append(edge)
     queue = [edge_of[key] for mouth in passage.mouths for key in _edge_keys(mouth) if key in edge_of]
     seen, inner = set(queue), set()
     while queue:

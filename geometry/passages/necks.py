@@ -121,7 +121,7 @@ def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
                 found += _doorways(walls, mouths, between)
         for edge in edges:
             floor.join(*walls.sides[edge].tolist())
-    taken = {square for doorway in found for square in doorway.between}
+    taken = np.array([square for doorway in found for square in doorway.between], np.int64).reshape(-1, 2)
     passages = [_passage(walls, doorway, taken) for doorway in found]
     return sorted(passages, key=lambda passage: (passage.place[::-1], passage.width, passage.mouths))
 
@@ -207,7 +207,7 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
         yield _Doorway(mouth, inner, _squares_on(walls, mouth.edge))
 
 
-def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
+def _passage(walls: Walls, doorway: _Doorway, taken: Longs) -> Passage:
     """Return the passage of a doorway, with the side whose gate is further south, then west, as the first."""
     gates = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
     (here, one), (there, two) = sorted(gates, key=lambda way: way[0][::-1])
@@ -229,14 +229,14 @@ def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
     return (float(left[0]), float(left[1])), (float(right[0]), float(right[1]))
 
 
-def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
+def _gate(walls: Walls, mouth: _Mouth, taken: Longs) -> XY:
     """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to."""
     (ax, ay), (bx, by) = _mouth_ends(walls, mouth)
     x, y = (ax + bx) / 2, (ay + by) / 2
     mask, west, south = _centre_mask(walls.corners[walls.triangles[list(mouth.floor)]])
-    for column, row in taken:
-        if 0 <= row - south < mask.shape[0] and 0 <= column - west < mask.shape[1]:
-            mask[row - south, column - west] = False
+    at = taken[:, ::-1] - (south, west)
+    at = at[((at >= 0) & (at < mask.shape)).all(axis=1)]
+    mask[at[:, 0], at[:, 1]] = False
     rows, columns = np.nonzero(mask)
     across, up = columns + (west + 0.5), rows + (south + 0.5)
     beyond = (bx - ax) * (up - ay) - (by - ay) * (across - ax) < 0
