@@ -28,7 +28,7 @@ from utak.planner.tasking.rule_effects import (
     rules_alone_leave_no_plan,
     rules_without_plan,
 )
-from utak.planner.tasking.search import make_plan
+from utak.planner.tasking.search import MAX_QUESTIONS, make_plan
 from utak.planner.tasking.setting import (
     WhereGoalsHold,
     goal_of_place,
@@ -314,8 +314,8 @@ class Intention:
         for on_lattice in (True, False):  # ways by whole squares are found fast, and mostly they do
             oracle = CarryOracle(problem, situation, self._pull, avoid, turn, on_lattice)
             made = make_plan(problem, situation, oracle, tried, self._meant)
-            if not made.plan.unmet:
-                break
+            if not made.plan.unmet or oracle.asked > MAX_QUESTIONS:
+                break  # who asked too much by whole squares would do so by exact ways, too
         self.blamed = rules_without_plan(made, situation)
         self.blamed_before = self.blamed or self.blamed_before
         self.shut_out = rules_alone_leave_no_plan(made, self.blamed, situation)

@@ -223,7 +223,7 @@ class PlanSearch:
         if errand.subject == ROBOT:
             return self._ask(state, errand, shut).after is None
         end = self._problem.places[errand.subject, errand.place]
-        return self._oracle.is_refuted(state, errand.subject, end, errand.place, shut)
+        return self._oracle.is_refuted(state, errand.subject, end, shut)
 
     def _least_refutation(self, state: TableState, errand: Errand, origin: str) -> RefutedStep:
         """Return the refutation of an errand: each circumstance is left out while geometry still refuses."""

@@ -76,6 +76,8 @@ def test_a_pose_within_a_wall_is_refuted_wherever_the_robot_stands(on_lattice: b
     problem = drawn_problem(situation, {"g": At(Pose(-6.0, 0.0, 0.0))})
     oracle = CarryOracle(problem, situation, on_lattice=on_lattice)
     end = problem.places["g", "g1_pose"]
+    assert oracle.is_refuted(problem.state, "g", end, frozenset())
+    assert oracle.asked == 1  # geometry is asked about the most floor alone
     assert oracle.bring(problem.state, "g", end, "g1_pose").certainty == Certainty.REFUTED
     assert oracle.is_refuted_from_anywhere(problem.state, "g", end, frozenset())
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,6 +16,8 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.carry import CarryOracle
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage, stages
+from utak.planner.tasking import intention as intention_module
+from utak.planner.tasking import search
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.setting import WhereGoalsHold, goal_of_place, problem_of, wish_of_place
@@ -103,6 +106,27 @@ def test_a_wish_that_failed_is_dropped_for_good() -> None:
     intention.failed(found.errand, situation, "")
     intention.update(stage, situation, {}, 1.0)
     assert intention.next_errand(stage, situation) is None
+
+
+@pytest.mark.parametrize(("most", "searches"), [(0, 1), (search.MAX_QUESTIONS, 2)])
+def test_a_search_that_asked_too_much_is_not_made_again_with_exact_ways(
+    most: int, searches: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[MadePlan] = []
+
+    def noted(*given: Any) -> MadePlan:
+        """Make a plan, and note it."""
+        made.append(make_plan(*given))
+        return made[-1]
+
+    for module in (search, intention_module):
+        monkeypatch.setattr(module, "MAX_QUESTIONS", most)
+    monkeypatch.setattr(intention_module, "make_plan", noted)
+    situation = replace(known_situation(WALLED_IN), binding={"x": "g", "y": "h"})
+    intention = Intention(WHERE)
+    intention.update(stage_of('pose(y, "POINT (9 1)", 0).'), situation, {}, 1.0)
+    assert intention.attempt is not None
+    assert len(made) == searches
 
 
 @pytest.mark.parametrize("weight", [0, 3])
