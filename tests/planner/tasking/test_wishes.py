@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -16,8 +15,6 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.carry import CarryOracle
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage, stages
-from utak.planner.tasking import intention as intention_module
-from utak.planner.tasking import search
 from utak.planner.tasking.intention import Intention
 from utak.planner.tasking.search import MadePlan, make_plan
 from utak.planner.tasking.setting import WhereGoalsHold, goal_of_place, problem_of, wish_of_place
@@ -108,25 +105,28 @@ def test_a_wish_that_failed_is_dropped_for_good() -> None:
     assert intention.next_errand(stage, situation) is None
 
 
-@pytest.mark.parametrize(("most", "searches"), [(0, 1), (search.MAX_QUESTIONS, 2)])
+FILLED = [  # things fill the corridor through which g must go: more ways to clear it than geometry is asked about
+    "b" * 34,
+    "b......." + "b" * 26,
+    *["b.ggg...hhh.kkk.mmm.nnn.ooo......b"] * 2,
+    "b.ggg.U.hhh.kkk.mmm.nnn.ooo......b",
+    "b......." + "b" * 26,
+    "b" * 34,
+]
+
+
+@pytest.mark.parametrize(("rows", "goal", "by_whole_squares"), [(FILLED, "g", True), (WALLED_IN, "h", False)])
 def test_a_search_that_asked_too_much_is_not_made_again_with_exact_ways(
-    most: int, searches: int, monkeypatch: pytest.MonkeyPatch
+    rows: list[str], goal: str, by_whole_squares: bool
 ) -> None:
-    made: list[MadePlan] = []
-
-    def noted(*given: Any) -> MadePlan:
-        """Make a plan, and note it."""
-        made.append(make_plan(*given))
-        return made[-1]
-
-    for module in (search, intention_module):
-        monkeypatch.setattr(module, "MAX_QUESTIONS", most)
-    monkeypatch.setattr(intention_module, "make_plan", noted)
-    situation = replace(known_situation(WALLED_IN), binding={"x": "g", "y": "h"})
+    situation = replace(known_situation(rows), binding={"x": goal})
+    east, north = situation.model.frame.place_to_utak(*origin("x", None, situation))
     intention = Intention(WHERE)
-    intention.update(stage_of('pose(y, "POINT (9 1)", 0).'), situation, {}, 1.0)
+    intention.update(stage_of(f'pose(x, "POINT ({east + 24} {north})", 0).'), situation, {}, 1.0)
     assert intention.attempt is not None
-    assert len(made) == searches
+    refuted = intention.attempt.refutations
+    assert refuted
+    assert all(one.found.startswith("by whole squares") == by_whole_squares for one in refuted)
 
 
 @pytest.mark.parametrize("weight", [0, 3])
