@@ -2,12 +2,16 @@
 
 from collections.abc import Sequence
 
+from utak.geometry.manipulation.goals import At
+from utak.geometry.motion.se2 import Pose
 from utak.kb.language.terms import Fact
-from utak.planner.deciding.bringing import another_way, carry_on
+from utak.kb.objects.movability import square_ways
+from utak.kb.world.model import Node
+from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, nothing_to_do
-from utak.planner.sights.things import unfelt_rims
+from utak.planner.sights.things import things_in_question, unfelt_rims
 from utak.planner.situation import Situation
 
 
@@ -37,10 +41,20 @@ class Trials:
         felt = feel_rims(unfelt_rims(situation.cost_maps, feeling_scope(turn)), turn)
         if felt is not None:
             return felt
-        meant = situation.named_by(goals)
+        meant, several = situation.named_by(goals), things_in_question(situation.cost_maps, feeling_scope(turn))
         for node in situation.model.objects:
             moved = None if node.name in meant else another_way(node, turn)
+            if moved is None and node in several and node.name not in situation.binding.values():
+                moved = _moved_once(node, turn)
             if moved is not None:
                 self._moving = node.name
                 return moved
         return nothing_to_do("no thing is left to try")
+
+
+def _moved_once(node: Node, turn: StageTurn) -> Decision | None:
+    """Return the next command to move a thing by a square, so that it is seen whether it is one; None once tried."""
+    if node.moved or node.resisted:
+        return None
+    ends = {way: At(Pose(float(x), float(y), 0.0)) for way, (x, y) in square_ways(turn.situation.model.frame).items()}
+    return bring_to_end(node, ends, turn, f"{node.name} may be more than one thing: ")

@@ -29,8 +29,11 @@ def test_things_are_felt_all_round_first() -> None:
     assert all("felt all round" in decision.why for decision in found)
 
 
-def test_what_was_felt_all_round_and_never_pushed_stays_where_it_is() -> None:
-    assert Trials().next((), turn_of(ELSEWHERE, felt(SMALL))).result == "idle"
+def test_what_was_felt_all_round_and_never_pushed_is_moved_once() -> None:
+    never = felt(SMALL)
+    assert "g can be grasped" in Trials().next((), turn_of(ELSEWHERE, never)).why
+    tried = tuple(replace(node, resisted=("north",)) for node in never.model.objects)
+    assert Trials().next((), turn_of(ELSEWHERE, situation_of(replace(never.model, objects=tried)))).result == "idle"
 
 
 def test_what_was_moved_is_one_thing() -> None:
