@@ -223,12 +223,11 @@ def _lopsided(line: SeamLine, labels: Labels, colours: Mapping[RowColumn, str]) 
 
 def _unsettled(line: SeamLine, region: Bools, colours: Mapping[RowColumn, str]) -> Bools:
     """Return the unfelt squares on the rim at the ends of a line, where nothing settles that it runs there."""
+    # At an inner corner two things may meet, or one thing have its own.
     mask: Bools = np.zeros_like(region)
-    ends = line.ends
-    if any(_is_inner_corner(number, line, region) or all(p in colours for p in ends[number]) for number in (0, 1)):
-        return mask
-    for place in (place for end in ends for place in end):
-        mask[place] = place not in colours
+    if not any(all(place in colours for place in end) for end in line.ends):
+        for place in (place for end in line.ends for place in end):
+            mask[place] = place not in colours
     return mask
 
 

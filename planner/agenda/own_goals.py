@@ -23,6 +23,7 @@ from utak.planner.deciding.verification import (
     check_elsewhere,
     look_again,
     look_at_contradiction,
+    look_for_more,
     robot_square,
 )
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
@@ -263,5 +264,6 @@ def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision 
     verifier, situation = turn.verifier, turn.situation
     nodes = [situation.object_of(str(term)) for goal in goals for term in goal.args[1:]]
     doubted = [n for n in nodes if n is not None and (verifier.is_unsettled(n) or (there and n.vague))]
-    looks = (turn.look(verifier.next_look(node, situation)) for node in doubted)
+    looks = [turn.look(verifier.next_look(node, situation)) for node in doubted]
+    looks += [turn.look_if_reached(look_for_more(node, situation)) for node in nodes if there and node is not None]
     return next((look for look in looks if look is not None), None)

@@ -58,22 +58,37 @@ def test_two_things_part_where_their_colours_say_so(marks: Marks) -> None:
 @settings(max_examples=60, deadline=None)
 def test_feeling_what_is_unsettled_leads_to_the_seam(marks: Marks, random: object) -> None:
     """From one square of each thing on, what is felt beside an unsettled seam parts the two things rightly at last."""
-    region, all_felt = marks != ".", rim(marks)
+    all_felt = rim(marks)
     felt: Felt = {}
     for colour in sorted(set(marks.ravel()) - {"."}):
         squares = sorted(place for place, other in all_felt.items() if other == colour)
         place = random.choice(squares)  # type: ignore[attr-defined]
         felt[place] = colour
+    parts, felt = felt_on(marks, felt)
+    for part in parts:
+        assert len({colour for place, colour in felt.items() if part[place]}) == 1
+
+
+def felt_on(marks: Marks, felt: Felt) -> tuple[tuple[NDArray[np.bool_], ...], Felt]:
+    """Feel beside seams until all are settled; return the parts then, and all that was felt."""
+    all_felt = rim(marks)
     for halt in count():
         assert halt < 8  # each halt at least halves what is left, and there are at most ten squares in a row
-        parting = part_by_colour(region, felt)
+        parting = part_by_colour(marks != ".", felt)
         if not parting.unsettled:
-            break
+            return parting.parts, felt
         row, column = np.argwhere(parting.unsettled[0])[0].tolist()
         near = [place for place in all_felt if max(abs(place[0] - row), abs(place[1] - column)) <= 1]
-        felt |= {place: all_felt[place] for place in near}
-    for part in parting.parts:
-        assert len({colour for place, colour in felt.items() if part[place]}) == 1
+        felt = felt | {place: all_felt[place] for place in near}
+    raise AssertionError
+
+
+def test_an_inner_corner_may_be_that_of_one_thing() -> None:
+    """Felt at its end alone, the lower arm of an L looks like a thing of its own."""
+    marks = marks_of([".....ll....", ".....ll....", ".ccccllll..", ".ccccllll..", "..........."])
+    felt = {(1, 4): "c", (1, 8): "l"}
+    assert not any(np.array_equal(part, marks == "l") for part in part_by_colour(marks != ".", felt).parts)
+    assert any(np.array_equal(part, marks == "l") for part in felt_on(marks, felt)[0])
 
 
 def test_without_a_second_colour_nothing_is_parted() -> None:

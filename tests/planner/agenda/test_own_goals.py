@@ -43,3 +43,15 @@ def test_each_thing_that_a_goal_names_is_made_sure_of(goal: str) -> None:
     goals = OwnGoals(lambda _goal, situation: Destination(np.flatnonzero(robot_square(situation.model))))
     found = goals.go(turn, Intention(WhereGoalsHold(None, None, destination)))  # type: ignore[arg-type]
     assert (found.verdict == TaskVerdict.DONE) == ("x" not in goal), found.why
+
+
+@pytest.mark.parametrize("settled", [False, True])
+def test_where_a_thing_ends_that_touches_another_is_felt_before_the_robot_is_there(settled: bool) -> None:
+    model = all_felt(
+        known_situation(["bbbbbbbbb", "b.....U.b", "b..ggcc.b", "b..ggcc.b", "b.......b", "bbbbbbbbb"]).model
+    )
+    seam = model.mask(next(node for node in model.objects if node.name == "g").patch)
+    model = replace(model, unsettled_seams=() if settled else (seam,))
+    turn = turn_of(Stage(facts_from_text("beside(utak, x).")), situation_of(model, {"x": "c"}))
+    found = OwnGoals(destination).go(turn, Intention(WhereGoalsHold(None, None, destination)))  # type: ignore[arg-type]
+    assert (found.verdict == TaskVerdict.DONE) == settled, found.why
