@@ -53,8 +53,12 @@ def possible_doors(model: WorldModel, rooms: Rooms, rules: tuple[Path, ...]) -> 
             verge |= model.mask(node.patch)
     if (verge == model.verge).all():
         return ()
-    others = rooms_of(model, rules, verge).doors
-    return tuple(one for one in others if all(math.dist(one.place, door.place) > SAME_DOOR for door in rooms.doors))
+    found = list(rooms.doors)
+    certain = model.view._replace(probability=np.maximum(model.view.probability, verge))
+    for view in (model.view, certain):  # what is hardly seen yet may bound doors, too
+        others = rooms_of(replace(model, view=view), rules, verge).doors
+        found += [one for one in others if all(math.dist(one.place, door.place) > SAME_DOOR for door in found)]
+    return tuple(found[len(rooms.doors) :])
 
 
 def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0) -> Bools:

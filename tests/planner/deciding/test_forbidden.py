@@ -11,12 +11,12 @@ import utak
 from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.goals.test_object_goals import facts_from_text
-from tests.planner.situations import situation_of
+from tests.planner.situations import known_situation, situation_of
 from utak.kb.task.task import Task
-from utak.kb.world.rooms import Door, count_crossings, went_through
+from utak.kb.world.rooms import Door, count_crossings, rooms_of, went_through
 from utak.planner.deciding.keeping import ConstraintKeeper
 from utak.planner.screen.projection import UNSEEN_LEVEL
-from utak.planner.situation import Situation
+from utak.planner.situation import Situation, possible_doors
 
 DOOR = Door("d1", (5.0, 2.0), (5.0, 5.0), (1, 2), 99)
 WALL = "b" + "." * 11 + "bb" + "." * 11 + "b"
@@ -178,3 +178,14 @@ object(t1, n, "POLYGON ((29 16, 29 18, 31 18, 31 16, 29 16))").
     )
     episode = utak.Run(scenario).finish()
     assert (episode.verdict, episode.achieved) == ("done", True)
+
+
+@pytest.mark.parametrize("probability", [0.4, 0.9])
+def test_what_is_hardly_seen_and_what_was_never_felt_may_bound_a_door(probability: float) -> None:
+    """A rule about doors is broken for good by a walk through one that nobody thought of."""
+    thing = [ONE_DOOR[0], OPEN, *[row.replace("bb.", "gg.") for row in ONE_DOOR[2:6]]]
+    model = known_situation([*thing, *ONE_DOOR[6:]]).model
+    view, sure = model.view, model.view.probability.copy()
+    sure[1:5, 12:14] = probability  # the wall between the rooms, south of the door
+    model = replace(model, view=view._replace(probability=sure))
+    assert 3.0 in [door.width for door in possible_doors(model, rooms_of(model), ())]
