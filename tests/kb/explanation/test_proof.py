@@ -189,7 +189,7 @@ def test_the_checker_finds_a_wrong_cost() -> None:
     facts = ["aim(1,explore,50)", "aim(2,explore,60)"]
     (decision,) = best_decisions(encoding_path("aims"), " ".join(f"{fact}." for fact in facts))
     root = explain_decision("aims", facts, ["choose(1)"], "choose(1)").root
-    (rival,) = root.rivals
+    (rival,) = (one for one in root.rivals if one.atom)
 
     for wrong in (replace(rival, difference=9), replace(rival, verdict="forbidden"), replace(rival, prices=())):
         assert faults_of_rivals(decision, replace(root, rivals=(wrong,)))
