@@ -12,6 +12,7 @@ State lies in three places: the localisation tracker (`Tracker`), the touches (`
 
 from copy import deepcopy
 from dataclasses import replace
+from itertools import takewhile
 from pathlib import Path
 
 from utak.kb.body import Command, Grasp, Impression
@@ -126,7 +127,7 @@ class Knowledge:
         self._feel(impression)
         view = self._map()
         regions = self._regions(view)
-        model = self._world(impression, accommodated, view, regions)
+        model = self._world(impression, view, regions)
         return self._with_objects(model), accommodated
 
     def _feel(self, impression: Impression) -> None:
@@ -171,9 +172,7 @@ class Knowledge:
         regions = MapRegions(percept, labels, interpret_regions(percept, touched, self.rules), parted.unsettled)
         return separate_felt_things(regions, view, felt, self.rules)
 
-    def _world(
-        self, impression: Impression, accommodated: Accommodation, view: MapView, regions: MapRegions
-    ) -> WorldModel:
+    def _world(self, impression: Impression, view: MapView, regions: MapRegions) -> WorldModel:
         """Return the world model without objects, from the tracker, the touches, the map view and its regions."""
         memory = self.memory
         return WorldModel(
@@ -202,7 +201,7 @@ class Knowledge:
             elsewhere=memory.former is not None and not memory.slips,
             interrupted=bool(memory.been or memory.lifted_at),
             shaken=memory.shaken,
-            contradicted=accommodated.explanation.unexplained > 0,
+            contradicted=len(list(takewhile(bool, reversed(memory.residuals)))),
         )
 
     def _with_objects(self, model: WorldModel) -> WorldModel:

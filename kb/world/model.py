@@ -128,7 +128,7 @@ class WorldModel:
     interrupted: bool = False  # Whether its track has a gap: for a while it did not know where it was, or was lifted
     elsewhere: bool = False  # Whether others put the robot somewhere, and it has not found yet where on its map that is
     shaken: bool = False  # Whether an impression contradicted another one, or a motion ended beside its predicted place
-    contradicted: bool = False  # Whether some fields of this impression agree with nothing that is believed
+    contradicted: int = 0  # How many of the last impressions in a row have fields that agree with nothing believed
 
     @property
     def beyond_doubt(self) -> bool:

@@ -12,6 +12,7 @@ from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Release
 from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
 from utak.kb.language.terms import Fact
+from utak.kb.localisation.tracker import RESIDUAL_WINDOW
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
 from utak.planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
@@ -139,7 +140,8 @@ class OwnGoals:
                 pushed = next(filter(None, (push_to_see(node, doubt, there, turn) for doubt in doubts)), None)
                 if pushed is not None:
                     return pushed
-        found = turn.seek(doubts, lambda: doubts[0].what) if doubts else nothing_to_do("nothing is left to look at")
+        looks = doubts if model.contradicted < RESIDUAL_WINDOW else []  # so many looks from elsewhere told nothing new
+        found = turn.seek(looks, lambda: doubts[0].what) if doubts else nothing_to_do("nothing is left to look at")
         if found.verdict is not None and model.held is not None:  # what is in hand may shut the robot in
             return Decision(Release(), f"{model.held} is released, because the robot must walk: {found.why}")
         if found.verdict is not None and contradiction is None:  # as for pieces that no floor is beside

@@ -14,6 +14,7 @@ from utak.geometry.manipulation.plan_carrying import Inside
 from utak.kb.body import Move
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.terms import Fact
+from utak.kb.localisation.tracker import RESIDUAL_WINDOW
 from utak.kb.task.binding import Reconciliation
 from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
@@ -50,8 +51,8 @@ NARROW = [
 ]
 
 
-def stood_in(rows: list[str], contradicted: bool) -> WorldModel:
-    """Return the model of a room seen whole. contradicted : whether the last impression disagrees with it."""
+def stood_in(rows: list[str], contradicted: int) -> WorldModel:
+    """Return the model of a room seen whole. contradicted : how many of the last impressions disagree with it."""
     model = known_model(rows)
     here = (math.floor(model.place[0]), math.floor(model.place[1]))
     return replace(model, looked_from=frozenset({here}), contradicted=contradicted)
@@ -155,6 +156,15 @@ def test_nothing_is_done_while_the_last_impression_contradicts_what_is_believed(
         assert isinstance(decision.command, Move)
         assert decision.why.startswith("what is seen differs from what is believed, near POINT (")
         assert decider.decide(replace(model, contradicted=False), [model.place]).verdict == "done"
+
+
+def test_looks_that_tell_nothing_new_come_to_an_end() -> None:
+    """A thing whose outline is believed otherwise than it is looks otherwise from everywhere."""
+    for times in range(1, RESIDUAL_WINDOW + 1):
+        model = stood_in(BESIDE_A_THING, times)
+        decision = Decider(AT_START).decide(model, [model.place])
+        assert (decision.verdict == "limit") == (times == RESIDUAL_WINDOW)
+        assert "what is seen differs from what is believed" in decision.why
 
 
 def test_a_contradiction_that_stays_from_everywhere_ends_with_limit() -> None:
