@@ -6,7 +6,6 @@ from utak.geometry.manipulation.goals import At
 from utak.geometry.motion.se2 import Pose
 from utak.kb.language.terms import Fact
 from utak.kb.objects.movability import square_ways
-from utak.kb.world.model import Node
 from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope
 from utak.planner.deciding.stage_turn import StageTurn
@@ -37,24 +36,17 @@ class Trials:
 
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to find out whether what seems one thing is several; nothing when nothing is left."""
-        situation = turn.situation
-        felt = feel_rims(unfelt_rims(situation.cost_maps, feeling_scope(turn)), turn)
+        situation, scope = turn.situation, feeling_scope(turn)
+        felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)
         if felt is not None:
             return felt
-        meant, several = situation.named_by(goals), things_in_question(situation.cost_maps, feeling_scope(turn))
+        meant, several = situation.named_by(goals), things_in_question(situation.cost_maps, scope)
+        ways = {way: At(Pose(float(x), float(y), 0.0)) for way, (x, y) in square_ways(situation.model.frame).items()}
         for node in situation.model.objects:
             moved = None if node.name in meant else another_way(node, turn)
-            if moved is None and node in several and node.name not in situation.binding.values():
-                moved = _moved_once(node, turn)
+            if node in several and node.name not in situation.binding.values() and not (node.moved or node.resisted):
+                moved = bring_to_end(node, ways, turn)  # by a square: it is seen to be one thing, or to be several
             if moved is not None:
                 self._moving = node.name
                 return moved
         return nothing_to_do("no thing is left to try")
-
-
-def _moved_once(node: Node, turn: StageTurn) -> Decision | None:
-    """Return the next command to move a thing by a square, so that it is seen whether it is one; None once tried."""
-    if node.moved or node.resisted:
-        return None
-    ends = {way: At(Pose(float(x), float(y), 0.0)) for way, (x, y) in square_ways(turn.situation.model.frame).items()}
-    return bring_to_end(node, ends, turn, f"{node.name} may be more than one thing: ")
