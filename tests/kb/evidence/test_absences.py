@@ -26,7 +26,7 @@ CROSS = [
 WALL, GAP = "b...................b..................bb", "b......................................bb"
 WOKEN = WALL[:36] + "U" + WALL[37:]  # the doors are seen from afar, and one of them wider than it is
 ROWS = [*[WALL] * 4, *[GAP] * 5, WOKEN, *[WALL] * 2, *[GAP] * 5, *[WALL] * 5]
-SOUTH = ":- brought(X, _, _, T), offset(X, _, N), N < 0.\n"  # with it doors are circumstances of refutations
+SOUTH = ":- brought(X, _, _, T), offset(X, _, N), N < -2000.\n"  # with it doors are circumstances of refutations
 TWO_DOORS = ["b" * 41, "b" * 41, *ROWS, "b" * 41]
 
 

@@ -117,7 +117,7 @@ def test_rules_of_the_user_stand_in_the_programs_that_they_reach(tmp_path: Path)
     files = {entry["file"]: entry for entry in index_of(folder)}
     reached = {entry["encoding"] for name, entry in files.items() if "--kb" in (folder / name).read_text()}
     assert "interpretation" in reached
-    assert "aims" not in reached
+    assert "accommodation" not in reached
     for name, entry in files.items():
         if entry["encoding"] in reached:
             check_decision(folder / name, entry["answer"], tmp_path)
