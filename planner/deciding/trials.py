@@ -7,7 +7,7 @@ from utak.geometry.motion.se2 import Pose
 from utak.kb.language.terms import Fact
 from utak.kb.objects.movability import square_ways
 from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
-from utak.planner.deciding.feeling import feel_rims, feeling_scope
+from utak.planner.deciding.feeling import feel_rims, feeling_scope, walls_to_feel
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, nothing_to_do
 from utak.planner.sights.things import things_in_question, unfelt_rims
@@ -40,7 +40,9 @@ class Trials:
         felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)
         if felt is not None:
             return felt
-        meant, several = situation.named_by(goals), things_in_question(situation.cost_maps, scope)
+        # While walls are left that were never felt, the verdict rests on these.
+        several = [] if walls_to_feel(turn).any() else things_in_question(situation.cost_maps, scope)
+        meant = situation.named_by(goals)
         ways = {way: At(Pose(float(x), float(y), 0.0)) for way, (x, y) in square_ways(situation.model.frame).items()}
         for node in situation.model.objects:
             moved = None if node.name in meant else another_way(node, turn)

@@ -36,6 +36,15 @@ def test_what_was_felt_all_round_and_never_pushed_is_moved_once() -> None:
     assert Trials().next((), turn_of(ELSEWHERE, situation_of(replace(never.model, objects=tried)))).result == "idle"
 
 
+def test_nothing_is_moved_for_that_while_walls_were_never_felt() -> None:
+    """The verdict rests on these then."""
+    model = felt(SMALL).model
+    walls = situation_of(
+        replace(model, felt={square: colour for square, colour in model.felt.items() if colour != "b"})
+    )
+    assert Trials().next((), turn_of(ELSEWHERE, walls)).result == "idle"
+
+
 def test_what_was_moved_is_one_thing() -> None:
     assert Trials().next((), turn_of(ELSEWHERE, felt(SMALL, moved=True))).result == "idle"
 
