@@ -9,13 +9,13 @@ does no more in these runs than to sort, and is there for what users' rules say 
 """
 
 import argparse
-import json
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.timing.explaining import decisions
 from utak.kb.language.atoms import atom_parts
 from utak.kb.reasoning.encodings import encoding_facts
 from utak.planner.navigation.subgoals import PLANNER_ASP
@@ -103,15 +103,12 @@ RESTATED: Mapping[str, Callable[[FactTable], str]] = {
 }
 
 
-def decisions(lines: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, FactTable, Sequence[str]]]:
-    """Yield the decisions of an episode that are written in full: the encoding, what it was given, its answer."""
-    for line in lines:
-        for encoding, *rest in line["belief"].get("solved", ()):
-            if len(rest) > 1 and rest[1] and encoding in RESTATED:
-                facts: dict[str, list[Sequence[str]]] = {}
-                for name, arguments in map(atom_parts, rest[0]):
-                    facts.setdefault(name, []).append(arguments)
-                yield encoding, facts, rest[1]
+def by_name(facts: Sequence[str]) -> FactTable:
+    """Return the arguments of facts, by the name of these."""
+    found: dict[str, list[Sequence[str]]] = {}
+    for name, arguments in map(atom_parts, facts):
+        found.setdefault(name, []).append(arguments)
+    return found
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -121,10 +118,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     made: Counter[str] = Counter()
     same: Counter[str] = Counter()
     for log in sorted(log for folder in parser.parse_args(arguments).folders for log in folder.rglob("*.jsonl")):
-        lines = [line for line in map(json.loads, log.read_text().splitlines()) if "step" in line]
-        for encoding, facts, answer in decisions(lines):
-            made[encoding] += 1
-            same[encoding] += RESTATED[encoding](facts) in answer
+        for encoding, facts, answer in decisions(log):
+            if encoding in RESTATED:
+                made[encoding] += 1
+                same[encoding] += RESTATED[encoding](by_name(facts)) in answer
     print(f"{'encoding':>10}{'decisions':>11}{'the same':>10}")
     for encoding in RESTATED:
         print(f"{encoding:>10}{made[encoding]:11}{same[encoding]:10}")

@@ -65,6 +65,8 @@ CLAIMED_RELATIONS = ("in", "beside", "joins")  # what claims relate two paramete
 CHANCES_OF = ("may_be", "joined", "hidden", "loc")  # what chances.lp states of three arguments
 PLACE_CASE = word_argument("case", ("likely", "other", "open", "closed", "door", "verge"))  # where a thing may be
 PROPERTY_ARGUMENT = word_argument("property", PROPERTIES)
+SEEN_ARGUMENTS = (PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT)  # a property, its value, how likely
+CLAIM_ARGUMENT = word_argument("claim", (*PROPERTIES, *CLAIMED_RELATIONS))
 RELATION_ARGUMENT = word_argument("relation", CLAIMED_RELATIONS)
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
 MEANING_ARGUMENTS = (PARAMETER_ARGUMENT, NODE_ARGUMENT)  # what a parameter means
@@ -252,26 +254,21 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     },
     "reconciliation": {
         **{(name, 1): (PARAMETER_ARGUMENT,) for name in ("wanted", "named", "carried", "kept", "hypothesised")},
-        ("claim", 4): (PARAMETER_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("claim", 4): (PARAMETER_ARGUMENT, *SEEN_ARGUMENTS),
         ("described", 2): (PARAMETER_ARGUMENT, word_argument("kind", ("door", "room"))),
         ("related", 4): (RELATION_ARGUMENT, PARAMETER_ARGUMENT, PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("place", 3): (CANDIDATE_ARGUMENT, word_argument("kind", ("door", "room")), CONFIDENCE_ARGUMENT),
         ("holds", 3): (RELATION_ARGUMENT, CANDIDATE_ARGUMENT, CANDIDATE_ARGUMENT),
         ("measure", 5): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, *[LENGTH_ARGUMENT] * 2, CONFIDENCE_ARGUMENT),
         ("candidate", 2): (CANDIDATE_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("has", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
-        ("seen", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        **{(name, 4): (CANDIDATE_ARGUMENT, *SEEN_ARGUMENTS) for name in ("has", "seen")},
         ("settled", 2): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
         ("distance", 2): (CANDIDATE_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (CANDIDATE_ARGUMENT,) for name in ("fixed", "moved")},
         ("may_have", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
         ("enough", 2): (PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("contradicted", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
-        ("near_miss", 3): (
-            PARAMETER_ARGUMENT,
-            CANDIDATE_ARGUMENT,
-            word_argument("claim", (*PROPERTIES, *CLAIMED_RELATIONS)),
-        ),
+        ("near_miss", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, CLAIM_ARGUMENT),
         **{(name, 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT) for name in MATCHES},
     },
     "task": {
@@ -334,7 +331,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
         **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
-        **{(name, 0): () for name in ["hand_full", "robot_lost", "map_contradicted", "stage_attained", "unplanned"]},
+        **{(name, 0): () for name in ("hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted")},
+        ("stage_attained", 0): (),
         ("begun", 1): (BEGUN_ARGUMENT,),
         ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
         ("planned", 1): (STEP_ARGUMENT,),

@@ -95,8 +95,9 @@ class Activities:
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
         self._own.note(turn)
-        held = frozenset(filter(self.holds(turn.situation), turn.goals.values()))
-        self._undid |= {(self._pursued, goal) for goal in self._held - held if self._pursued is not None}
+        if self._pursued is not None:
+            holds = self.holds(turn.situation)
+            self._undid |= {(self._pursued, goal) for goal in self._held if not holds(goal)}
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = proved = nothing_to_do("all goals hold")
@@ -109,7 +110,7 @@ class Activities:
             if decision.command is not None:
                 agenda.record()
                 self._note_step(found, decision, turn)
-                self._held, self._pursued = held, turn.goals.get(found.subject) if found.kind == "pursue" else None
+                self._note_pursuit(found, turn)
                 return decision
             agenda.note(found, decision)
             if decision.verdict not in (None, TaskVerdict.DONE):
@@ -123,6 +124,12 @@ class Activities:
         """The task plan, where the newest command is one of its present step; else the step as which it is given."""
         plan = self.errands.intention.followed
         return plan if self._follows and plan is not None else self._bare
+
+    def _note_pursuit(self, activity: Activity, turn: StageTurn) -> None:
+        """Note which goal an activity pursues by itself, and which hold meanwhile."""
+        self._pursued = turn.goals.get(activity.subject) if activity.kind == "pursue" else None
+        alone = self._pursued is not None
+        self._held = frozenset(filter(self.holds(turn.situation), turn.goals.values())) if alone else frozenset()
 
     def _note_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> None:
         """Note as what step of a plan an activity is done."""
@@ -182,9 +189,10 @@ class Activities:
             "own_goals": bool(turn.stage.own),
             "stages_attained": not turn.stage.goals,
             "regions_forbidden": any(True for _ in avoidances(turn.situation.task)),
-            "hand_full": model.held is not None or model.may_hold,
+            "hand_full": model.held is not None,
+            "hand_unsure": model.may_hold,
             "unplanned": self.errands.intention.attempt is not None,
-            "robot_lost": model.lost or model.may_hold,
+            "robot_lost": model.lost,
             "map_contradicted": model.anew and model.shaken,
         }
         yield from (name for name, holds in given.items() if holds)
@@ -316,9 +324,11 @@ def _rules_at(places: Sequence[str]) -> str:
 
 
 def _put_down(situation: Situation) -> Decision:
-    """Return the release of what a robot holds that is lost."""
-    held = situation.model.held or "what may be in hand"
-    why = f"{held} is released, because the robot does not know where it is: nothing looks as expected"
+    """Return the release of what a robot holds that is lost, or that does not know what it holds."""
+    model = situation.model
+    lost = f"{model.held} is released, because the robot does not know where it is: nothing looks as expected"
+    unsure = "what may be in hand is released, for it was grasped before the map was begun"
+    why = unsure if model.held is None else lost
     return Decision(Release(), why)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,15 +68,10 @@ def choose(
         return NoSubgoal()
     files, world = ((), ()) if rules is None else (rules.files, rules.world)
     about, given = [subgoal.what for subgoal in subgoals], [*facts, *world]
-    chosen = [atom for atom in solve([AIMS_ENCODING, *files], given, about=about) or () if atom.match("choose", 1)]
-    if not chosen:
-        return NoSubgoal(rules_to_blame(AIMS_ENCODING, files, given, _chooses_nothing))
-    return subgoals[chosen[0].arguments[0].number]
-
-
-def _chooses_nothing(atoms: Sequence[Any]) -> bool:
-    """Return whether an answer, given by the shown atoms, has no subgoal."""
-    return not any(atom.match("choose", 1) for atom in atoms)
+    answer = solve([AIMS_ENCODING, *files], given, about=about)
+    if not answer:
+        return NoSubgoal(rules_to_blame(AIMS_ENCODING, files, given, lambda atoms: not atoms))
+    return subgoals[answer[0].arguments[0].number]
 
 
 def _facts_for_rules(number: int, place: Square, model: WorldModel, rules: AimRules) -> Iterator[str]:

@@ -203,8 +203,8 @@ def nearest_square(cost_maps: CostMaps, squares: SquareIndices) -> int:
     reached = cost_maps.nearest(squares)
     if reached is None:
         return int(squares[0])
-    far = cost_maps.distances[reached.level].ravel()[squares]
-    return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
+    column, row = cost_maps.nearest_at(reached.level, squares)
+    return row * int(cost_maps.floor.shape[1]) + column
 
 
 def unlooked_floor(cost_maps: CostMaps, apart: int) -> Bools:

@@ -56,7 +56,7 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "stage_goal": (("g1", "g2"), (1, 2)), "missing": (("g1", "g2"),), "unclear": (("g1", "g2"),),
         "own_goals": (), "regions_forbidden": (),
         "stages_attained": (), "constraints_doubtful": (), "hand_full": (), "robot_lost": (), "map_contradicted": (),
-        "begun": (("clear", "feel"),), "came_to": (ACTIVITIES, ("idle", "done", "impossible")),
+        "hand_unsure": (), "begun": (("clear", "feel"),), "came_to": (ACTIVITIES, ("idle", "done", "impossible")),
     },
     "feel": {
         "halt": (NUMBERS, (20, 90), (1, 2)), "tells": (NUMBERS, ("thing", "plain"), ("doorway", "square"), (1, 3)),
