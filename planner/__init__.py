@@ -8,7 +8,7 @@ per_model     answers that depend on a world model, computed once for it
 situation     what a decision depends on: beliefs, cost maps, rooms, what parameters mean
 journal       what a step adds to the record of decisions and places
 steps         the steps of the robot itself, of which each command is one
-step_rules    whether steps may be done, by planner/asp/steps.lp and users' rules
+step_rules    whether steps may be done, by planner/asp/deciding/steps.lp and users' rules
 advice        what the plan executor advises
 subgoal_kind  the kinds of subgoals
 under_way     what is being planned, in words

@@ -5,6 +5,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from utak.kb.body import Command, Impression
+from utak.planner.question import Question
 
 
 class TaskVerdict(StrEnum):
@@ -48,6 +49,8 @@ class Decision:
     near: tuple[float, float] | None = None
     # The steps of the robot with which the plan goes on, the command's own first (planner.steps); () for that one alone
     steps: tuple[str, ...] = ()
+    # What was given to planner/asp/deciding for it; None where it was not chosen among subgoals or ways
+    question: Question | None = None
     # What proves the verdict `impossible`, in words, a clause each; that verdict is never given without
     proof: tuple[str, ...] = ()
 
@@ -58,7 +61,7 @@ class Decision:
 
     @property
     def result(self) -> str:
-        """Return the result in the words of planner/asp/agenda.lp: command, idle, settled, or the verdict."""
+        """Return the result in the words of planner/asp/deciding: command, idle, settled, or the verdict."""
         if self.command is not None:
             return "command"
         if self.verdict is None:

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from utak.geometry.kernels.arrays import XY
+from utak.kb.language.atoms import atom_parts
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.tracing.decisions import SolverCall
+from utak.planner.question import DECIDING
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
-ROUTES_ENCODING = "walks"  # the encoding whose candidates are routes
 
 
 class Journal:
@@ -35,9 +36,9 @@ class Journal:
         found["map_from"] = len(memory.been)
         if places != (*self._places, _rounded(memory.frame.place_to_utak(*memory.place))):
             found["seen_from"] = [list(place) for place in places]
-        routes = [call for call in decisions if call.encoding == ROUTES_ENCODING and call.answer]
+        routes = next(filter(None, map(_routes, reversed(decisions))), [])
         if routes:
-            found["routes"] = _routes(routes[-1])
+            found["routes"] = routes
         self._places, self._step = places, self._step + 1
         return found
 
@@ -56,6 +57,7 @@ def _rounded(place: XY) -> XY:
 
 
 def _routes(call: SolverCall) -> list[dict[str, Any]]:
-    """Return the routes of a decision, each with its points and whether it was chosen."""
-    answer = call.answer or ()
-    return [{"points": points, "chosen": f"walked({number})" in answer} for number, points in enumerate(call.about)]
+    """Return the routes of a decision, each with its points and whether it was chosen; [] where none was offered."""
+    tight = (atom_parts(fact) for fact in call.facts) if call.encoding == DECIDING.stem and call.answer else ()
+    numbers = [int(arguments[0]) for name, arguments in tight if name == "tight"]
+    return [{"points": call.about[n], "chosen": f"walked({n})" in (call.answer or ())} for n in numbers]

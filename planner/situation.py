@@ -38,6 +38,7 @@ from utak.planner.constraints import (
     region_of,
     region_squares,
 )
+from utak.planner.question import NO_QUESTION, Question
 from utak.planner.screen.projection import CostMaps, dilate
 from utak.planner.sights.frontiers import Viewpoint, viewpoint_of
 from utak.planner.stages import constraints
@@ -106,6 +107,7 @@ class Situation:
     as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     # By parameter of the task that means nothing seen: the places where it may be, with percent (kb/asp/chances.lp)
     may_be: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    question: Question = NO_QUESTION  # what to do: what was given so far in this decision
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:

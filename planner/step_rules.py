@@ -2,31 +2,28 @@
 
 from collections.abc import Sequence
 
-from utak.kb.reasoning.solver import solve
-from utak.kb.reasoning.user_rules import rules_reach, rules_to_blame
-from utak.kb.tracing.decisions import record_decisions
-from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.question import Atoms, Question
 from utak.planner.situation import Situation
 
-STEPS_ENCODING = PLANNER_ASP / "steps.lp"
+# The predicates of planner/asp/deciding about the steps of the robot alone.
+STEP_PREDICATES = (("offered", 2), ("step", 2), ("begun", 0), ("in_hand", 2), ("there", 3), ("holds", 1))
 
 
 def are_ruled(situation: Situation) -> bool:
     """Return whether users' rules speak of the steps of the robot."""
-    return rules_reach(STEPS_ENCODING.stem, situation.rules)
+    return situation.question.speaks_of(STEP_PREDICATES)
 
 
-def refusal(steps: Sequence[str], situation: Situation) -> str:
+def refusal(steps: Sequence[str], situation: Situation, question: Question | None = None, last: bool = False) -> str:
     """Return why some steps, first the next one, may not be done, in words; "" where they may."""
-    held, files = situation.model.held, situation.rules if are_ruled(situation) else ()
-    facts = [f"offered({number},{step})" for number, step in enumerate(steps)]
-    facts += [f"holds({held})"] * (held is not None)
-    facts += situation.facts_for_rules(STEPS_ENCODING.stem) if files else ()
-    with record_decisions():
-        begun = solve([STEPS_ENCODING, *files], facts)
-    if begun:
+    # question : where what was chosen before has one of its own. last : whether the answer is to be recorded.
+    held = situation.model.held
+    given = (question or situation.question).adding(f"offered({number},{step})" for number, step in enumerate(steps))
+    given = given.adding([f"holds({held})"] * (held is not None))
+    answer = given.recorded() if last else given.answer()
+    if _are_begun(answer or ()):
         return ""
-    blamed = rules_to_blame(STEPS_ENCODING, files, facts, lambda atoms: not atoms) if files else ()
+    blamed = given.blamed(lambda atoms: not _are_begun(atoms))
     if not blamed:
         return f"{', '.join(steps)} cannot be done one after the other"
     return forbidden_by(blamed, ", ".join(steps))
@@ -39,3 +36,8 @@ def forbidden_by(rules: Sequence[str], what: str) -> str:
         if len(rules) == 1
         else f"the rules at {' and '.join(rules)} forbid {what}"
     )
+
+
+def _are_begun(answer: Atoms) -> bool:
+    """Return whether steps are begun, by an answer."""
+    return any(atom.name == "begun" for atom in answer)

@@ -4,7 +4,7 @@ from enum import StrEnum
 
 
 class SubgoalKind(StrEnum):
-    """The purpose of a subgoal. The values are the constants of `aim/3` in planner/asp/aims.lp."""
+    """The purpose of a subgoal. The values are the constants of `aim/3` in planner/asp/deciding/subgoals.lp."""
 
     ATTAIN = "attain"  # the goal of the present stage holds at the squares
     INSPECT = "inspect"  # from the squares the robot sees or feels an object that may be the wanted one

@@ -3,8 +3,8 @@
     python -m benchmarks.unchanged write FOLDER --count 100
     python -m benchmarks.episodes.planned FOLDER
 
-Compared are the command of a step and the facts plan/2 and step/2 of the step before it; and, without
-planner/asp/steps.lp, whether the steps can be done one after the other. Printed are what differs, how many commands
+Compared are the command of a step and the facts plan/2 and step/2 of the step before it; and, without the rules of
+planner/asp/deciding, whether the steps can be done one after the other. Printed are what differs, how many commands
 each step of a plan gave, and how many were reflexes of a robot that does not know where it is.
 """
 

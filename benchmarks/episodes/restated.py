@@ -18,23 +18,23 @@ from typing import Any
 from benchmarks.timing.explaining import decisions
 from utak.kb.language.atoms import atom_parts
 from utak.kb.reasoning.encodings import encoding_facts
-from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.question import PLANNER_ASP
 
 FactTable = Mapping[str, Sequence[Sequence[str]]]  # the arguments of the facts of each name
-LOOK_PRICES = {"explore": 40, "inspect": 40, "pass": 60, "settle": 200}  # tenths of squares, as in aims.lp
-SWITCH = {"aims": 30, "walks": 200}  # what a switch costs, as in these encodings
+LOOK_PRICES = {"explore": 40, "inspect": 40, "pass": 60, "settle": 200}  # tenths of squares, as in subgoals.lp
+SWITCH = {"subgoal": 30, "way": 200}  # what a switch costs: tenths and hundredths of squares
 RISK_PRICE, FREE_CLEARANCE = 20, 100  # hundredths of squares: for a percent of risk; what costs nothing (walks.lp)
 
 
 def cheapest_aim(facts: FactTable) -> str:
     """Return the subgoal of the least expected price; one that attains the goal first."""
     chances, besides = dict(facts.get("chance", ())), dict(facts.get("besides", ()))
-    last = {number for (number,) in facts.get("last", ())}
+    last = {number for (number,) in facts.get("last", ())} & {aim[0] for aim in facts["aim"]}
 
     def price(aim: Sequence[str]) -> tuple[Any, ...]:
         number, kind, way = aim
         cost = int(way) + int(besides.get(number, 0)) + LOOK_PRICES.get(kind, 0)
-        switch = SWITCH["aims"] if last and number not in last else 0
+        switch = SWITCH["subgoal"] if last and number not in last else 0
         return kind != "attain", 100 * cost // int(chances.get(number, 100)) + switch, int(number)
 
     return f"choose({min(facts['aim'], key=price)[0]})"
@@ -49,16 +49,16 @@ def cheapest_halt(facts: FactTable) -> str:
         value[halt] += int(number) * chances[kind, size]
     halts = [halt for halt in facts["halt"] if value[halt[0]]]
     number, *_ = min(halts, key=lambda one: (1_000_000 * int(one[2]) // value[one[0]], int(one[1]), int(one[0])))
-    return f"feel({number})"
+    return f"choose({number})"
 
 
 def cheapest_way(facts: FactTable) -> str:
     """Return the way, of those pulled tight, of the least length with its risk and clearance."""
-    last = {number for (number,) in facts.get("last", ())}
+    last = {number for (number,) in facts.get("last", ())} & {way[0] for way in facts["tight"]}
 
     def price(way: Sequence[str]) -> tuple[int, int]:
         number, length, clearance, risk = way
-        switch = SWITCH["walks"] if last and number not in last else 0
+        switch = SWITCH["way"] if last and number not in last else 0
         return int(length) + RISK_PRICE * int(risk) + max(0, FREE_CLEARANCE - int(clearance)) + switch, int(number)
 
     return f"walked({min(facts['tight'], key=price)[0]})"
@@ -94,12 +94,23 @@ def cheapest_errand(facts: FactTable) -> str:
     return f"occurs(arrive({place}),0)" if mover == "utak" else f"occurs(carry({mover},{place}),0)"
 
 
-RESTATED: Mapping[str, Callable[[FactTable], str]] = {
-    "aims": cheapest_aim,
-    "feel": cheapest_halt,
-    "walks": cheapest_way,
-    "agenda": first_activity,
-    "task": cheapest_errand,
+def restated_decision(facts: FactTable) -> set[str]:
+    """Return activity, subgoal and way as the restatements of these choose them."""
+    found = {first_activity(facts)}
+    found |= {cheapest_halt(facts) if "halt" in facts else cheapest_aim(facts)} if "aim" in facts else set()
+    return found | ({cheapest_way(facts)} if "tight" in facts else set())
+
+
+RESTATED: Mapping[str, Callable[[FactTable], set[str]]] = {
+    "deciding": restated_decision,
+    "task": lambda facts: {cheapest_errand(facts)},
+}
+# The parts of a decision by themselves: what they are about, and their restatement.
+PARTS: Mapping[str, tuple[str, Callable[[FactTable], str]]] = {
+    "activity": ("stage_goal", first_activity),
+    "halt": ("halt", cheapest_halt),
+    "subgoal": ("aim", cheapest_aim),
+    "way": ("tight", cheapest_way),
 }
 
 
@@ -112,7 +123,7 @@ def by_name(facts: Sequence[str]) -> FactTable:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print a line for each encoding."""
+    """Print a line for each encoding, and for each part of `deciding`."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="folders with episodes, *.jsonl")
     made: Counter[str] = Counter()
@@ -120,11 +131,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for log in sorted(log for folder in parser.parse_args(arguments).folders for log in folder.rglob("*.jsonl")):
         for encoding, facts, answer in decisions(log):
             if encoding in RESTATED:
+                table = by_name(facts)
                 made[encoding] += 1
-                same[encoding] += RESTATED[encoding](by_name(facts)) in answer
-    print(f"{'encoding':>10}{'decisions':>11}{'the same':>10}")
-    for encoding in RESTATED:
-        print(f"{encoding:>10}{made[encoding]:11}{same[encoding]:10}")
+                same[encoding] += RESTATED[encoding](table) <= set(answer)
+                for part, (about, restate) in PARTS.items() if encoding == "deciding" else ():
+                    if about in table and not (part == "subgoal" and "halt" in table):
+                        made[part] += 1
+                        same[part] += restate(table) in answer
+    print(f"{'program':>10}{'decisions':>11}{'the same':>10}")
+    for name in (*RESTATED, *PARTS):
+        print(f"{name:>10}{made[name]:11}{same[name]:10}")
     return 0
 
 

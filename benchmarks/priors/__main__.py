@@ -194,7 +194,7 @@ DECIDING = {
         seen=walls_seen,
         row=WallSeen,
         counted=counted_walls,
-        whole="feel.lp",
+        whole="deciding",
         worlds="two of three of benchmarks.plugs, the others of all kinds",
     ),
     "looks": Deciding(

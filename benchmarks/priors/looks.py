@@ -34,10 +34,15 @@ def with_things(count: int, seed: int) -> Iterator[tuple[Asked, float]]:
     )
 
 
+def _chose_subgoal(look: LookedAt) -> bool:
+    """Return whether the robot chose among subgoals at a moment."""
+    return any(fact.startswith("aim(") for _, facts in look.decisions for fact in facts)
+
+
 def looks_seen(look: LookedAt) -> Iterator[LookSeen]:
     """Yield the looks that were offered for a thing that is none of those that were seen."""
     truth, model = look.moment.alternatives, look.model
-    sought = sorted(may_be(look.moment.facts)) if any(name == "aims" for name, _ in look.decisions) else []
+    sought = sorted(may_be(look.moment.facts)) if _chose_subgoal(look) else []
     if truth is None or not sought or (thing := truth.thing_meant(sought[0])) is None:
         return
     if truth.place(sought[0]) in {node.name for node in model.objects}:

@@ -1,4 +1,4 @@
-"""Walls that the robot feels because nothing else is left, with what begins there in truth (planner/asp/feel.lp)."""
+"""Walls that the robot feels because nothing else is left, with what begins there in truth (planner/asp/deciding)."""
 
 from collections.abc import Iterator
 from itertools import chain, islice, product
@@ -33,7 +33,10 @@ def with_plugs(count: int, seed: int) -> Iterator[tuple[Asked, float]]:
 
 def walls_seen(look: LookedAt) -> Iterator[WallSeen]:
     """Yield the places of walls in question at a moment at which the robot decides where to feel; none at others."""
-    if not any(name == "feel" for name, _ in look.decisions) or look.moment.alternatives is None:
+    if (
+        not any(fact.startswith("halt(") for _, facts in look.decisions for fact in facts)
+        or look.moment.alternatives is None
+    ):
         return
     things = look.moment.alternatives.thing_squares()
     offered = [*stretches_in_question(walls_in_question(look.model, CostMaps(look.model).floor))]

@@ -90,7 +90,7 @@ class FactExplainer:
 
     def _agenda_with(self, given: str, step: int) -> SolverCall | None:
         """Return the choice of the agenda that has what the task plan was given, such as what S is stuck with."""
-        asked = (call for call in self.record.decisions(step) if call.encoding == "agenda")
+        asked = (call for call in self.record.decisions(step) if call.encoding == "deciding")
         return next((call for call in asked if given in (*call.facts, *(call.answer or ()))), None)
 
     def _below(self, fact: str, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:

@@ -14,12 +14,11 @@ from utak.kb.language.goal_words import GOAL_WORDS, PLACE_FACTS, ROBOT, WRAPPING
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, ROOT_NODE, VERGE_NODE
 
-AGENDA = "agenda"  # the encoding that chooses activities and verdicts
-CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
-    AGENDA: ("do", "this activity was chosen"),
-    "aims": ("choose", "this subgoal was chosen"),
-    "walks": ("walked", "this way was chosen, before it was pulled tight"),
-    "feel": ("feel", "this halt was chosen to feel walls"),
+DECIDING = "deciding"  # the encoding that chooses what is done, and with which verdict a run ends
+CHOICES = {  # the predicates of its choices, and what was chosen, in words
+    "do": "this activity was chosen",
+    "choose": "this subgoal was chosen",
+    "walked": "this way was chosen, before it was pulled tight",
 }
 
 
@@ -157,32 +156,28 @@ def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
 
 def _ruled_verdicts(beliefs: FactExplainer, claim: str, step: int) -> Iterator[Reason]:
     """Yield the reason that the agenda has for a verdict at a step: what each activity came to; nothing without it."""
-    asked = [call for call in beliefs.record.decisions(step) if call.encoding == AGENDA]
+    asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDING]
     if asked and claim in (asked[-1].answer or ()):
         yield replace(beliefs.prove(asked[-1], claim, step), because="the agenda ends with this verdict")
 
 
 def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
-    """Yield what each of the planner's encodings chose last at a step: why, and what it refused."""
-    latest: dict[str, SolverCall] = {}
-    for call in beliefs.record.decisions(step):
-        if call.encoding in CHOICES and call.answer:
-            latest[call.encoding] = call
-    for encoding, call in latest.items():
-        predicate, words = CHOICES[encoding]
-        for atom in call.answer or ():
-            if atom_parts(atom)[0] == predicate:
-                yield replace(beliefs.prove(call, atom, step), because=_about(call, atom) or words)
+    """Yield what was chosen last at a step: why, and what was refused."""
+    asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDING and call.answer]
+    for call in asked[-1:]:
+        for predicate in CHOICES:
+            for atom in call.answer or ():
+                if atom_parts(atom)[0] == predicate:
+                    yield replace(beliefs.prove(call, atom, step), because=_about(call, atom))
 
 
 def _about(call: SolverCall, atom: str) -> str:
-    """Return in words what a choice is about; '' when the record does not say."""
-    arguments = atom_parts(atom)[1]
+    """Return in words what a choice is about."""
+    name, arguments = atom_parts(atom)
     number = arguments[0] if arguments else ""
     if not number.isdigit() or int(number) >= len(call.about):
-        return ""
+        return CHOICES[name]
     about = call.about[int(number)]
-    if isinstance(about, str):
-        return f"{CHOICES[call.encoding][1]}: {about}"
-    points = " ".join(f"({east:g}, {north:g})" for east, north in about)
-    return f"{CHOICES[call.encoding][1]}: {points}"
+    if not isinstance(about, str):
+        about = " ".join(f"({east:g}, {north:g})" for east, north in about)
+    return f"{CHOICES[name]}: {about}"

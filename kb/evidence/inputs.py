@@ -10,6 +10,7 @@ from utak.kb.evidence.record import Record, RecordedStep
 from utak.kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.goal_words import ROBOT
+from utak.kb.reasoning.interfaces import AGENDA_FACTS
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
@@ -24,7 +25,7 @@ AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to;
 # What encodings of the planner are given that was not measured: bounds, what is offered, asked, or came of something.
 DECIDED_INPUTS = frozenset({
     "horizon", "place", "aside", "asked", "rank", "wish", "fulfils", "about", "order", "meant_before", "may_mean",
-    "missing", "unclear", "waits", "stuck", "came_to", "holds", "thing", "goal", "bound_before", "planned",
+    "waits", "holds", "kept", "offered", "thing", "goal", "bound_before", "planned",
     "given_up", "not_through",
 })  # fmt: skip
 PARAMETER_INPUTS = frozenset({"bound_before", "planned", "given_up"})  # a parameter and a node, decided before
@@ -49,7 +50,7 @@ def input_reason(record: Record, given: Given, fact_reason: FactReason) -> Reaso
     if name in TASK_INPUTS:
         return Reason(given.atom, says, ReasonKind.TASK, "the task")
     below = [*_below(record, given, name, arguments, fact_reason)]
-    decided = given.call.encoding == "agenda" or name in DECIDED_INPUTS | WORLD_INPUTS  # no fact: it is supposed
+    decided = name in DECIDED_INPUTS | WORLD_INPUTS | AGENDA_FACTS  # no fact: it is supposed
     kind = ReasonKind.INPUT if below else ReasonKind.DECIDED if decided else ReasonKind.MEASURED
     return Reason(given.atom, says, kind, f"step {given.step}", tuple(below), _data(given, arguments))
 

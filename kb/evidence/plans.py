@@ -105,7 +105,7 @@ def _what_stands_in_the_way(record: Record, planned: str, step: int) -> Iterator
     if found is None or f"occurs({planned},0)" not in (found[1].answer or ()):
         return
     for call in record.decisions(found[0]):
-        for about in call.about if call.encoding == "agenda" else ():
+        for about in call.about if call.encoding == "deciding" else ():
             came, _, why = str(about).partition(": ")
             if came == f"pursue({subject})":
                 yield Reason(f"activity {came} led no further", why, ReasonKind.DECIDED, f"step {found[0]}")

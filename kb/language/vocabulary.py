@@ -225,7 +225,7 @@ SETTLING_STEPS = {  # with what each does, in words; {} is what it settles
     "feel": "walls are felt that may be things, for {}",
     "bare": "what stands before walls that were never felt is moved away, for {}",
 }
-# Those of the agenda besides (planner/asp/agenda.lp), where no task plan can be made or none is left.
+# Those of the agenda besides (planner/asp/deciding/activities.lp), where no task plan can be made or none is left.
 AGENDA_STEPS = {
     "confirm": "it is made sure that what seems to hold does",
     "recover": "what is held is put down, for the robot does not know where it is",

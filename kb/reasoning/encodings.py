@@ -1,7 +1,7 @@
 """The encodings: where they lie, which files each consists of, their text, and the constants that they state.
 
-An encoding is a file `NAME.lp`, with the files that it shares with others (SHARED_FILES), or a folder `NAME` of such
-files that stand for one program, in the order of their names. Rules, records and dumps know it by its name alone.
+An encoding is a file `NAME.lp`, or a folder `NAME` of such files that stand for one program, in the order of their
+names; and the files that it shares with others (SHARED_FILES). Rules, records and dumps know it by its name alone.
 """
 
 from functools import cache
@@ -19,7 +19,7 @@ SHARED_FILES = {
     "shapes": ("priors",),
     "movable": ("priors",),
     "chances": ("priors_of_whereabouts",),
-    "feel": ("priors_of_walls",),
+    "deciding": ("priors_of_walls",),
 }
 COUNTED_FACTS = ("priors_of_places", "priors_of_looks")  # files of facts alone, which Python reads
 SHARED_PARTS = frozenset(
@@ -60,13 +60,12 @@ def encoding_path(name: str) -> Path:
 
 
 def encoding_files(encoding: Path) -> tuple[Path, ...]:
-    """Return the files of an encoding: those of a folder sorted by name, or its own file and then those it shares."""
-    if encoding.is_dir():
-        return tuple(sorted(encoding.glob(f"*{SUFFIX}")))
-    if encoding.suffix != SUFFIX or not encoding.is_file():
+    """Return the files of an encoding: those of a folder sorted by name, or its own file; and then those it shares."""
+    if not encoding.is_dir() and (encoding.suffix != SUFFIX or not encoding.is_file()):
         return ()
-    shared = SHARED_FILES.get(encoding.stem, ()) if encoding.parent in ENCODING_FOLDERS else ()
-    return (encoding, *(encoding.with_name(f"{name}{SUFFIX}") for name in shared))
+    own = sorted(encoding.glob(f"*{SUFFIX}")) if encoding.is_dir() else [encoding]
+    shared = SHARED_FILES.get(encoding.stem, ()) if own and encoding.parent in ENCODING_FOLDERS else ()
+    return (*own, *(encoding.with_name(f"{name}{SUFFIX}") for name in shared))
 
 
 def encoding_text(encoding: Path) -> str:

@@ -53,8 +53,11 @@ REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT, PLACE_ARGUMENT, GOAL_AR
 PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT, SUBJECT_ARGUMENT = (  # a subject: a goal, all, robot, task, plan or look
     NAME_ARGUMENT._replace(name=name) for name in ("room", "door", "subject")
 )
-NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT, HALT_ARGUMENT = (
-    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time", "halt")
+NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
+    NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time")
+)
+WALKED_ARGUMENT = ArgumentType(  # the number of a subgoal, or a link
+    "subgoal or link", lambda term: NUMBER_ARGUMENT.check(term) and LINK_ARGUMENT.check(term)
 )
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 SUBGOAL_KINDS = ("attain", "inspect", "explore", "pass", "settle", "feel")
@@ -135,10 +138,9 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "parameter": ((("wanted", 1), 0),),
     "neck": ((("neck", 5), 0),),
     "convex corner": ((("convex", 3), 0),),
-    "halt": ((("halt", 3), 0),),
 }
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
-TRANSIENT_NUMBERS = frozenset({"neck", "convex corner", "halt"})
+TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
 ROLE_ARGUMENT = word_argument("role", ("bounds", "wall", "thing"))  # that a region is taken for
 WAY_ARGUMENT = word_argument("way", (*DIRECTIONS, "left", "right"))  # of a motion of a thing
 CASE_ARGUMENT = word_argument(
@@ -218,30 +220,6 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stands", 4): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NAME_ARGUMENT, AMOUNT_ARGUMENT),
         **{one: BELIEF_PREDICATES[one].arguments for one in [(name, 3) for name in CHANCES_OF] + [("plug", 2)]},
     },
-    "aims": {
-        ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
-        ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
-        ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
-        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "choose")},
-        ("in_room", 2): (NUMBER_ARGUMENT, PLAN_ROOM_ARGUMENT),
-        ("point", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
-        ("beside", 2): (NUMBER_ARGUMENT, NODE_ARGUMENT),
-        ("aim_price", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
-    },
-    "walks": {
-        **{one: BELIEF_PREDICATES[one].arguments for one in (("link", 5), ("crosses", 2), ("borders", 2))},
-        **{(name, 1): (JUNCTION_ARGUMENT,) for name in ("begins", "ends")},
-        **{(name, 1): (LINK_ARGUMENT,) for name in ("on", "avoid_link")},
-        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("walked", "last")},
-        **dict.fromkeys([("risk", 2), ("trodden", 2), ("link_price", 2)], (LINK_ARGUMENT, AMOUNT_ARGUMENT)),
-        ("in_room", 2): (LINK_ARGUMENT, PLAN_ROOM_ARGUMENT),
-        ("middle", 3): (LINK_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
-        ("step", 3): (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT),
-        ("tight", 4): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
-        **{(way, 2): (NUMBER_ARGUMENT, it) for way, it in (("part", LINK_ARGUMENT), ("through", PLAN_DOOR_ARGUMENT))},
-        ("not_through", 1): (PLAN_DOOR_ARGUMENT,),
-        ("door_price", 2): (PLAN_DOOR_ARGUMENT, LENGTH_ARGUMENT),
-    },
     "alternatives": {
         ("stated", 2): (FACT_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("weight", 2): (CONFIDENCE_ARGUMENT, AMOUNT_ARGUMENT),
@@ -320,19 +298,12 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
         **{(name, 1): (PLAN_DOOR_ARGUMENT,) for name in ("asked", "closed")},
     },
-    "steps": {
-        ("begun", 0): (),
-        ("holds", 1): (NODE_ARGUMENT,),
-        **dict.fromkeys([("offered", 2), ("step", 2)], (NUMBER_ARGUMENT, ROBOT_STEP_ARGUMENT)),
-        ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
-        ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
-    },
-    "agenda": {
+    "deciding": {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
         **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
         **{(name, 0): () for name in ("hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted")},
-        ("stage_attained", 0): (),
+        **{(name, 0): () for name in ("stage_attained", "begun")},
         ("begun", 1): (BEGUN_ARGUMENT,),
         ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
         ("planned", 1): (STEP_ARGUMENT,),
@@ -340,12 +311,31 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
         ("do", 1): (ACTIVITY_ARGUMENT,),
         ("verdict", 1): (VERDICT_ARGUMENT,),
-    },
-    "feel": {
-        ("halt", 3): (HALT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT),
-        ("tells", 4): (HALT_ARGUMENT, *WALL_ARGUMENTS, AMOUNT_ARGUMENT),
+        ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
+        ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
+        ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
+        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "choose", "walked")},
+        ("in_room", 2): (WALKED_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("point", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
+        ("beside", 2): (NUMBER_ARGUMENT, NODE_ARGUMENT),
+        ("aim_price", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
+        ("halt", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
+        ("tells", 4): (NUMBER_ARGUMENT, *WALL_ARGUMENTS, AMOUNT_ARGUMENT),
         **{(name, 3): (*WALL_ARGUMENTS, THOUSANDTHS_ARGUMENT) for name in ("counted_wall", "supposed")},
-        ("feel", 1): (HALT_ARGUMENT,),
+        **{one: BELIEF_PREDICATES[one].arguments for one in (("link", 5), ("crosses", 2), ("borders", 2))},
+        **{(name, 1): (JUNCTION_ARGUMENT,) for name in ("begins", "ends")},
+        **{(name, 1): (LINK_ARGUMENT,) for name in ("on", "avoid_link")},
+        **dict.fromkeys([("risk", 2), ("trodden", 2), ("link_price", 2)], (LINK_ARGUMENT, AMOUNT_ARGUMENT)),
+        ("middle", 3): (LINK_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
+        ("step", 3): (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT),
+        ("tight", 4): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(way, 2): (NUMBER_ARGUMENT, it) for way, it in (("part", LINK_ARGUMENT), ("through", PLAN_DOOR_ARGUMENT))},
+        ("not_through", 1): (PLAN_DOOR_ARGUMENT,),
+        ("door_price", 2): (PLAN_DOOR_ARGUMENT, LENGTH_ARGUMENT),
+        ("holds", 1): (NODE_ARGUMENT,),
+        **dict.fromkeys([("offered", 2), ("step", 2)], (NUMBER_ARGUMENT, ROBOT_STEP_ARGUMENT)),
+        ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
+        ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
     },
 }
 # Encodings that answer questions and decide nothing in a run.
@@ -361,6 +351,14 @@ PLAN_FACTS = frozenset(
         "default_price", "acts", "waits", "holds", "left", "settling", "settled",
     ]
 )  # fmt: skip
+# Predicates of the choice among activities. Rules forbid activities, and price them.
+AGENDA_FACTS = frozenset(
+    [
+        "stage_goal", "missing", "unclear", "own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful",
+        "hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted", "stage_attained", "begun", "undid",
+        "planned", "came_to", "stuck", "do", "verdict",
+    ]
+)  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "movable": frozenset({("moved", 1), ("kind", 3)}),
@@ -369,10 +367,8 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
-    "aims": frozenset(USER_RULE_INTERFACES["aims"]) - {("aim_price", 2)},
-    "walks": frozenset(USER_RULE_INTERFACES["walks"]) - {("avoid_link", 1), ("link_price", 2)},
-    "steps": frozenset(USER_RULE_INTERFACES["steps"]),
-    "feel": frozenset(USER_RULE_INTERFACES["feel"]) - {("supposed", 3)},
+    "deciding": frozenset(USER_RULE_INTERFACES["deciding"])
+    - {("aim_price", 2), ("avoid_link", 1), ("link_price", 2), ("supposed", 3)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
 MADE_LAST = frozenset(
@@ -386,9 +382,7 @@ WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
     for name, known in {
         **dict.fromkeys(("movable", "persistence"), frozenset({("shape", 3), ("colour", 3)})),
         "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
-        **dict.fromkeys(
-            ("reconciliation", "chances", "aims", "walks", "feel", "task", "steps", "agenda"), WORLD_PREDICATES
-        ),
+        **dict.fromkeys(("reconciliation", "chances", "task", "deciding"), WORLD_PREDICATES),
     }.items()
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
@@ -400,5 +394,5 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
     }
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
-    | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
+    | {signature for signature in USER_RULE_INTERFACES["deciding"] if signature[0] in AGENDA_FACTS}
 )  # fmt: skip

@@ -216,6 +216,12 @@ def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
     return bool(users) and bool(read_rules(users).rules_reaching(encoding))
 
 
+def rules_speak_of(encoding: str, users: Sequence[Path], predicates: Iterable[Signature]) -> bool:
+    """Return whether any of some users' rules that takes part in an encoding names one of some predicates."""
+    meant, rules = frozenset(predicates), read_rules(users).rules_reaching(encoding) if users else ()
+    return any(atom.signature in meant for one in rules for atom in (*one.heads, *one.body))
+
+
 def rules_to_blame(
     encoding: Path,
     users: Sequence[Path],

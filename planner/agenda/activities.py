@@ -1,6 +1,6 @@
 """Activities: the steps of the robot for a stage of its task, and their results.
 
-The activities have the names of planner/asp/agenda.lp, which chooses among them.
+The activities have the names of planner/asp/deciding, which chooses among them.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -30,6 +30,7 @@ from utak.planner.goals.placement import meets_any_end, to_view_frame
 from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.problem import PlacedGoal
 from utak.planner.per_model import PerModel
+from utak.planner.question import DECIDING, Question
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
@@ -98,17 +99,17 @@ class Activities:
         if self._pursued is not None:
             holds = self.holds(turn.situation)
             self._undid |= {(self._pursued, goal) for goal in self._held if not holds(goal)}
-        about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
-        agenda = Agenda(self._facts(turn), turn.situation.rules, about)
+        about = tuple(f"{name}: {goal}" for name, goal in turn.goals.items())
+        agenda = Agenda(Question(turn.situation.rules, tuple(self._facts(turn)), about))
         last = proved = nothing_to_do("all goals hold")
         while isinstance(found := agenda.next(), Activity):
             if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
                 agenda.plan(step)
                 continue
+            turn = turn.within(replace(turn.situation, question=agenda.question.keeping(f"do({found})")))
             decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), found, turn), turn)
             decision = _done_by_rules(decision, turn.situation)
             if decision.command is not None:
-                agenda.record()
                 self._note_step(found, decision, turn)
                 self._note_pursuit(found, turn)
                 return decision
@@ -116,7 +117,7 @@ class Activities:
             if decision.verdict not in (None, TaskVerdict.DONE):
                 last = decision
                 proved = decision if decision.verdict == TaskVerdict.IMPOSSIBLE else proved
-        agenda.record()
+        agenda.question.recorded()
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
 
     @property
@@ -196,7 +197,7 @@ class Activities:
             "map_contradicted": model.anew and model.shaken,
         }
         yield from (name for name, holds in given.items() if holds)
-        yield from turn.situation.facts_for_rules("agenda")
+        yield from turn.situation.facts_for_rules(DECIDING.stem)
 
     def _do(self, activity: Activity, turn: StageTurn, last: Decision) -> Decision:
         """Return what an activity comes to."""
@@ -336,7 +337,7 @@ def _done_by_rules(decision: Decision, situation: Situation) -> Decision:
     """Return a decision; `limit` in place of a command of which the steps may not be done."""
     if decision.command is None:
         return decision
-    refused = refusal(steps_of(decision, situation.model), situation)
+    refused = refusal(steps_of(decision, situation.model), situation, decision.question, last=True)
     return Decision(None, f"{decision.why}; {refused}", TaskVerdict.LIMIT) if refused else decision
 
 

@@ -1,20 +1,15 @@
-"""The next activity, chosen by planner/asp/agenda.lp from what is left to do and what came of earlier ones."""
+"""The next activity, chosen by planner/asp/deciding from what is left to do and what came of earlier ones."""
 
-from collections.abc import Iterable, Sequence
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from utak.kb.reasoning.solver import solve
-from utak.kb.reasoning.user_rules import rules_to_blame
-from utak.kb.tracing.decisions import record_decisions
 from utak.planner.decision import Decision, TaskVerdict
-from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.question import Atoms, Question
 
 
 class Activity(NamedTuple):
     """Something that the robot may do next."""
 
-    kind: str  # what it does, as planner/asp/agenda.lp names it, such as carry.
+    kind: str  # what it does, as planner/asp/deciding names it, such as carry.
     subject: str = ""  # what it is about, such as the name of a goal; "" for nothing in particular
 
     def __str__(self) -> str:
@@ -29,7 +24,7 @@ class StageEnd(NamedTuple):
     forbidden: str = ""  # by which users' rules all that may still be done is forbidden, in words; "" where it is not
 
 
-def _chooses_nothing(atoms: Sequence[Any]) -> bool:
+def _chooses_nothing(atoms: Atoms) -> bool:
     """Return whether an answer, given by the shown atoms, has neither an activity nor an end."""
     return not any(atom.name in ("do", "verdict", "stage_attained") for atom in atoms)
 
@@ -37,21 +32,19 @@ def _chooses_nothing(atoms: Sequence[Any]) -> bool:
 class Agenda:
     """The choice among activities within one decision, with the results of those that were tried."""
 
-    def __init__(self, given: Iterable[str], rules: Sequence[Path], about: Sequence[str]) -> None:
+    def __init__(self, given: Question) -> None:
         """Make an agenda on which nothing was done."""
-        self._facts, self._about = list(given), list(about)
-        self._files = [PLANNER_ASP / "agenda.lp", *rules]
+        self.question = given
         self._stuck: list[str] = []
 
     @property
     def results(self) -> tuple[str, ...]:
         """The results of activities, and what the robot is stuck with, as facts without full stops."""
-        return (*(fact for fact in self._facts if fact.startswith("came_to(")), *self._stuck)
+        return (*(fact for fact in self.question.facts if fact.startswith("came_to(")), *self._stuck)
 
     def next(self) -> Activity | StageEnd:
         """Return the activity that is chosen now, or the end when nothing is left."""
-        with record_decisions():  # of all choices, only the last one is recorded
-            answer = solve(self._files, self._facts) or ()
+        answer = self.question.answer() or ()
         self._stuck = [str(atom) for atom in answer if atom.name == "stuck"]
         for atom in answer:
             if atom.name == "do":
@@ -61,21 +54,17 @@ class Agenda:
                 return StageEnd(TaskVerdict(str(atom.arguments[0])))
             if atom.name == "stage_attained":
                 return StageEnd(TaskVerdict.DONE)
-        agenda, *rules = self._files
-        blamed = rules_to_blame(agenda, rules, self._facts, _chooses_nothing)
+        blamed = self.question.blamed(_chooses_nothing)
         return StageEnd(
             TaskVerdict.LIMIT, f", by the rule at {' and '.join(blamed)}" if blamed else ", as far as is known"
         )
 
     def note(self, activity: Activity, decision: Decision) -> None:
         """Note that an activity came to no command, and why."""
-        self._facts.append(f"came_to({activity},{decision.result})")
-        self._about.append(f"{activity}: {decision.why}")
+        self.question = self.question.adding(
+            [f"came_to({activity},{decision.result})"], [f"{activity}: {decision.why}"]
+        )
 
     def plan(self, step: str) -> None:
         """Note the step with which the task plan begins, as planner/asp/task writes it."""
-        self._facts.append(f"planned({step})")
-
-    def record(self) -> None:
-        """Write the last choice into the record of decisions: it has the facts of all that were refused before."""
-        solve(self._files, self._facts, about=self._about)
+        self.question = self.question.adding([f"planned({step})"])

@@ -1,6 +1,6 @@
 """The decider: from the world model to the next command, one stage of the task after the other until all are attained.
 
-What is done for a stage is chosen by planner/asp/agenda.lp (planner.agenda.activities).
+What is done for a stage is chosen by planner/asp/deciding/activities.lp (planner.agenda.activities).
 """
 
 from collections.abc import Mapping, Sequence

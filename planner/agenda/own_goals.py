@@ -226,15 +226,17 @@ class OwnGoals:
         offered = encircling_routes(cost_maps, track, node)
         self._turn = self._turn or (besides > NO_ROUND) - (besides < -NO_ROUND)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
-        route = turn.pursuer.choose_route(begun, situation)
-        if route is None:
+        walk = turn.pursuer.choose_route(begun, situation)
+        if walk is None:
             why = f"{stage} cannot be attained: no way leads round {name}"
             return impossible(why, f"no way leads round {name}")
+        route, question = walk
         self._turn = next(turn for turn, other in offered.items() if other is route)
         turn.pursuer.keep_route(route, model)
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         move = next_move(cost_maps, route.squares, route.level, kind, off_centre=False)
-        return Decision(move, f"the way round {name}; {stage}", steps=towards(kind, end_of(route, model), model))
+        steps = towards(kind, end_of(route, model), model)
+        return Decision(move, f"the way round {name}; {stage}", steps=steps, question=question)
 
 
 def _turned(start: XY, end: XY, node: Node) -> float:

@@ -1,6 +1,6 @@
 """Feeling: before the robot gives up, it feels the walls that may be things, the likeliest places first.
 
-planner.sights.walls says what is felt from where; planner/asp/feel.lp chooses where to halt next.
+planner.sights.walls says what is felt from where; planner/asp/deciding chooses where to halt next.
 """
 
 import math
@@ -11,13 +11,12 @@ import numpy as np
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
 from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
-from utak.kb.reasoning.solver import solve
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import Door
 from utak.planner.advice import Go
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, with_command
-from utak.planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
+from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import move_to, one_move_squares
 from utak.planner.screen.projection import dilate, indices_to_mask
 from utak.planner.sights.frontiers import Viewpoint
@@ -87,7 +86,7 @@ def walls_to_feel(turn: StageTurn) -> Bools:
 def feel_walls(turn: StageTurn) -> Decision | None:
     """Return the next command to feel walls that may be things; None when none is left that can be reached."""
     places = feeling_places(turn.situation.cost_maps, feeling_scope(turn))
-    return turn.look_if_reached(choose_halt(places, turn.situation))
+    return with_command(turn.seek(halts(places, turn.situation)))
 
 
 def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
@@ -101,29 +100,28 @@ def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
         return None
     near = dilate(turn.situation.model.mask(node.patch), 2).ravel()
     places = [p for p in feeling_places(turn.situation.cost_maps) if WallKind.THING in p.squares and near[p.square]]
-    return turn.look_if_reached(choose_halt(places, turn.situation))
+    return with_command(turn.seek(halts(places, turn.situation)))
 
 
-def choose_halt(places: Sequence[FeelingPlace], situation: Situation) -> Subgoal | None:
-    """Choose the square at which walls are felt next, by planner/asp/feel.lp; None when nothing is left to feel."""
+def halts(places: Sequence[FeelingPlace], situation: Situation) -> list[Subgoal]:
+    """Return the squares at which walls may be felt next, as subgoals: some of each kind of wall."""
     if not places:
-        return None
-    cost_maps, halts = situation.cost_maps, np.array([place.square for place in places])
-    ways = cost_maps.far(halts)
-    straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(halts, cost_maps.floor.shape)).ravel()
-    facts = []
+        return []
+    cost_maps, squares = situation.cost_maps, np.array([place.square for place in places])
+    ways = cost_maps.far(squares)
+    straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(squares, cost_maps.floor.shape)).ravel()
+    found = []
     for number in sorted(_offered(places, np.argsort(ways, kind="stable").tolist())):
         place = places[number]
-        moves = 1 if straight[place.square] else 2
-        facts.append(f"halt({number},{round(TENTHS_PER_SQUARE * float(ways[number]))},{moves})")
-        for size, told in (("doorway", place.doorways), ("square", place.squares)):
-            facts += [f"tells({number},{kind},{size},{told[kind]})" for kind in WallKind if told[kind]]
-    facts += situation.facts_for_rules("feel")
-    answer = solve([PLANNER_ASP / "feel.lp", *situation.rules], facts)
-    if not answer:
-        return None
-    chosen = places[answer[0].arguments[0].number]
-    return Subgoal(SubgoalKind.FEEL, np.array([chosen.square]), FEELING_REASON)
+        told = [
+            f"{kind},{size},{of_size[kind]}"
+            for size, of_size in (("doorway", place.doorways), ("square", place.squares))
+            for kind in WallKind
+            if of_size[kind]
+        ]
+        felt = ("1" if straight[place.square] else "2", *told)
+        found.append(Subgoal(SubgoalKind.FEEL, np.array([place.square]), FEELING_REASON, felt=felt))
+    return found
 
 
 def _offered(places: Sequence[FeelingPlace], order: Sequence[int]) -> set[int]:

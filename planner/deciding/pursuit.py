@@ -4,6 +4,7 @@ A route is kept while it holds: its subgoal is still wanted, and the squares ahe
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
@@ -13,7 +14,6 @@ from utak.geometry.kernels.arrays import XY, Square
 from utak.geometry.raster.geodesic import GEODESIC_UNREACHED
 from utak.kb.body import Command, Release
 from utak.kb.language.goal_words import ROBOT
-from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.world.model import WorldModel
 from utak.planner.deciding.search import contact_subgoals
 from utak.planner.decision import Decision, TaskVerdict, impossible
@@ -21,11 +21,12 @@ from utak.planner.goals.bounds import telling_squares
 from utak.planner.navigation.fewest_moves import MOVE_COST, FewestMoves
 from utak.planner.navigation.loop_guard import LoopGuard
 from utak.planner.navigation.sticky_route import StickyRoute, to_map_squares
-from utak.planner.navigation.subgoals import AIMS_ENCODING, AimRules, NoSubgoal, Subgoal, choose
+from utak.planner.navigation.subgoals import NoSubgoal, Subgoal, choose
 from utak.planner.navigation.walks import (
-    WALKS_ENCODING,
+    WALK_PREDICATES,
     NoWalk,
     PlannedRoute,
+    Walk,
     WalkRules,
     Walks,
     choose_walk,
@@ -87,14 +88,16 @@ class Pursuer:
                 offered = fewest.priced(offered)
             if refused:
                 offered = [one for one in (_without(one, refused, model) for one in offered) if len(one.squares)]
-            subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model), aim_rules(situation))
-            if isinstance(subgoal, NoSubgoal):
+            last, question = self._kept.subgoal(model), situation.question
+            chosen = choose(offered, situation.cost_maps, last, question, situation.rooms)
+            if isinstance(chosen, NoSubgoal):
                 missed, circled = missing(), len(offered) < len(subgoals) and not refused
                 whys = [one.why for one in refused]
-                whys += [forbidden_by(subgoal.rules, "every place to go to")] * bool(subgoal.rules)
+                whys += [forbidden_by(chosen.rules, "every place to go to")] * bool(chosen.rules)
                 if whys:
                     missed, proof = f"{missed}, and {' and '.join(dict.fromkeys(whys))}", ()
                 return _given_up(stage, missed, proof, in_circles=circled)
+            subgoal, question = chosen
             taken = None if along is None else along(subgoal)
             if taken is not None:
                 return taken
@@ -102,11 +105,11 @@ class Pursuer:
                 return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
             _, within = _priced(subgoal, ways_by_price)
             ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps, telling)
-            decision = self._walk(subgoal, stage, within, ways)
+            decision = self._walk(subgoal, stage, replace(within, question=question), ways)
             if isinstance(decision, RefusedEnd):
                 refused.append(decision)
                 continue
-            if ruled and (why := refusal(decision.steps, situation)):
+            if ruled and (why := refusal(decision.steps, situation, decision.question)):
                 refused.append(RefusedEnd(subgoal.what, self._kept.path(model)[-1], why))
                 continue
             if decision.command is None or not self._circles.noticed(model, decision.command):
@@ -130,65 +133,62 @@ class Pursuer:
         model, cost_maps = situation.model, situation.cost_maps
         reached = cost_maps.nearest(subgoal.squares)
         assert reached is not None
-        straight = None if fewest is None or self._is_ruled(situation) else fewest.way(subgoal)
+        straight = None if fewest is None or _speaks_of_links(situation) else fewest.way(subgoal)
         walked = None if straight is None else self.choose_route([straight], situation)
         walked = walked or self._route_left(subgoal, reached.level, situation)
-        route = walked or self._choose(find_walks(cost_maps, reached.level, subgoal.squares, self._paths), situation)
-        if isinstance(route, NoWalk) and route.rules:
+        walk = walked or self._choose(find_walks(cost_maps, reached.level, subgoal.squares, self._paths), situation)
+        if isinstance(walk, NoWalk) and walk.rules:
             there = cost_maps.nearest_at(reached.level, subgoal.squares)
-            return RefusedEnd(subgoal.what, there, forbidden_by(route.rules, "every way there"))
-        if isinstance(route, NoWalk):
+            return RefusedEnd(subgoal.what, there, forbidden_by(walk.rules, "every way there"))
+        if isinstance(walk, NoWalk):
             why = f"{stage} cannot be attained: every route there leads through a forbidden door"
             return impossible(why, "every route there leads through a forbidden door")
+        route, question = walk
         self.keep_route(route, model, subgoal.squares)
         kind = subgoal.kind if straight is not None or reached.level == 0 else SubgoalKind.PASS
         pace = WALKING_PACE if fewest is None else CARRYING_PACE
         move = next_move(cost_maps, route.squares, route.level, kind, pace)
-        return Decision(move, f"{subgoal.what}; {stage}", steps=towards(subgoal.kind, end_of(route, model), model))
+        steps = towards(subgoal.kind, end_of(route, model), model)
+        return Decision(move, f"{subgoal.what}; {stage}", steps=steps, question=question)
 
-    def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
+    def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> Walk | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""
-        if self._is_ruled(situation):  # by links, which the rest of a route does not name
+        if _speaks_of_links(situation):  # which the rest of a route does not name
             return None
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
-        return self.choose_route([rest], situation) if rest is not None and situation.shut(ROBOT) else rest
+        if rest is None or not situation.shut(ROBOT):
+            return None if rest is None else Walk(rest, situation.question)
+        return self.choose_route([rest], situation)
 
     def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
         """Remember the present route."""
         self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
-    def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
-        """Return which of some routes planner/asp/walks.lp chooses; None when all are forbidden."""
-        route = self._choose(walks_along(offered), situation) if offered else None
-        return None if isinstance(route, NoWalk) else route
+    def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> Walk | None:
+        """Return which of some routes is chosen; None when all are forbidden."""
+        walk = self._choose(walks_along(offered), situation) if offered else None
+        return None if isinstance(walk, NoWalk) else walk
 
-    def _choose(self, walks: Walks, situation: Situation) -> PlannedRoute | NoWalk:
-        """Return the walk that planner/asp/walks.lp chooses."""
+    def _choose(self, walks: Walks, situation: Situation) -> Walk | NoWalk:
+        """Return the walk that is chosen."""
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.shut(ROBOT))
         prices = {name: MOVE_COST * commands for name, commands in situation.door_prices.items()}
         rules = WalkRules(forbidden, prices)
-        if self._is_ruled(situation):
-            world = situation.facts_for_rules(WALKS_ENCODING.stem)
-            rules = rules._replace(files=situation.rules, world=world, track=situation.track, rooms=situation.rooms)
-        return choose_walk(walks, situation.cost_maps, before, situation.doors, rules)
+        if _speaks_of_links(situation):
+            rules = rules._replace(ruled=True, track=situation.track, rooms=situation.rooms)
+        return choose_walk(walks, situation.cost_maps, before, situation.doors, rules, situation.question)
 
-    def _is_ruled(self, situation: Situation) -> bool:
-        """Return whether rules of users speak of the links of walks."""
-        return rules_reach(WALKS_ENCODING.stem, situation.rules)
+
+def _speaks_of_links(situation: Situation) -> bool:
+    """Return whether users' rules speak of the links of walks."""
+    return situation.question.speaks_of(WALK_PREDICATES)
 
 
 def end_of(route: PlannedRoute, model: WorldModel) -> XY:
     """Return the middle of the last square of a route, (x, y) in squares, map frame."""
     column, row = route.squares[-1]
     return column + model.view.west + 0.5, row + model.view.south + 0.5
-
-
-def aim_rules(situation: Situation) -> AimRules | None:
-    """Return the users' rules about subgoals; None where there are none."""
-    if not rules_reach(AIMS_ENCODING.stem, situation.rules):
-        return None
-    return AimRules(situation.rules, situation.facts_for_rules(AIMS_ENCODING.stem), situation.rooms)
 
 
 def by_dearest_door(situation: Situation) -> list[tuple[int, Situation]]:

@@ -10,7 +10,8 @@ from utak.kb.task.binding import Reconciliation
 from utak.kb.world.rooms import rooms_of
 from utak.planner.goals.robot_goals import Destination
 from utak.planner.navigation.fewest_moves import MOVE_COST, SQUARE_COST
-from utak.planner.navigation.subgoals import PLANNER_ASP, Subgoal
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.question import PLANNER_ASP
 from utak.planner.screen.moves import one_move_squares
 from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.sights import frontiers

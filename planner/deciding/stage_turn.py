@@ -19,7 +19,7 @@ from utak.planner.situation import Situation
 from utak.planner.stages import Stage
 from utak.planner.subgoal_kind import SubgoalKind
 
-ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/asp/agenda.lp calls them
+ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/asp/deciding/activities.lp calls them
 
 
 @dataclass(frozen=True)

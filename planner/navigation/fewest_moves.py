@@ -58,7 +58,7 @@ class FewestMoves:
     def _priced(self, subgoal: Subgoal) -> Subgoal:
         """Return a subgoal whose price, with its way, comes to the cost of its moves, in squares (see `priced`)."""
         reached = self._cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
-        if reached is None:
+        if reached is None or subgoal.felt:  # halts have the number of their moves
             return subgoal
         near = self._met(subgoal)
         if len(near):

@@ -1,4 +1,4 @@
-"""Walks: which links of the pathgraph the robot takes to its goal, chosen by planner/asp/walks.lp.
+"""Walks: which links of the pathgraph the robot takes to its goal, chosen by planner/asp/deciding.
 
 Geometry supplies the links between the robot's square and the goal as facts, with their lengths, clearances and risks,
 the doors that they cross and the things that they border on; and the shortest ways over them, pulled tight. The other
@@ -6,7 +6,6 @@ two path-finders of the paper, and whoever has found routes already, offer each 
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -16,21 +15,23 @@ from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs, Square
 from utak.geometry.pathfinders.grid_astar import grid_path
 from utak.geometry.pathfinders.visibility_graph import visibility_path
-from utak.kb.reasoning.solver import solve_within
-from utak.kb.reasoning.user_rules import rules_to_blame
-from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.model import WorldModel, hundredths
 from utak.kb.world.pathgraph import bordering
 from utak.kb.world.rooms import Door, Rooms, count_crossings, went_through
 from utak.planner.navigation.network import Link, links_within, network
-from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.question import Question
 from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.screen.sweeps import squares_along
 
-WALKS_ENCODING = PLANNER_ASP / "walks.lp"
 MAX_TIGHT_WAYS = 6  # shortest ways over links that are pulled tight before the choice: bounds its time; by trial
-MAX_WALK_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
 TRODDEN = 1.5  # squares: what is nearer than that to where the robot has been counts as walked before; a convention
+# The predicates of planner/asp/deciding about links and ways alone.
+WALK_PREDICATES = (
+    *((name, 1) for name in ("begins", "ends", "on", "avoid_link", "walked", "not_through")),
+    *((name, 2) for name in ("crosses", "borders", "risk", "trodden", "link_price", "part", "through", "door_price")),
+    *(("middle", 3), ("step", 3), ("tight", 4), ("link", 5)),
+)
+WALK_LEVEL = -22  # the level at which planner/asp/deciding/walks.lp adds lengths up
 MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
@@ -62,13 +63,19 @@ class NoWalk(NamedTuple):
     rules: tuple[str, ...] = ()  # the rules of users because of which, as `rules.lp:3`; () where doors are why
 
 
+class Walk(NamedTuple):
+    """The walk that was chosen."""
+
+    route: PlannedRoute
+    question: Question  # what was given, with the choice kept
+
+
 class WalkRules(NamedTuple):
-    """Doors that are forbidden or dear, and the users' rules about links."""
+    """Doors that are forbidden or dear, and what users' rules about links ask for."""
 
     forbidden: frozenset[str] = frozenset()  # names of doors
     prices: Mapping[str, float] = {}  # squares of way that a pass through a door costs besides, by its name
-    files: tuple[Path, ...] = ()  # the users' rule files that reach walks.lp
-    world: tuple[str, ...] = ()  # the facts of the world model that they name
+    ruled: bool = False  # whether there are such rules
     track: tuple[XY, ...] = ()  # where the robot has been, map frame, in squares
     rooms: Rooms | None = None  # the rooms of the floor
 
@@ -122,53 +129,57 @@ def walks_along(routes: Sequence[PlannedRoute]) -> Walks:
 
 
 def choose_walk(
-    walks: Walks, cost_maps: CostMaps, before: frozenset[Square], doors: Sequence[Door], rules: WalkRules
-) -> PlannedRoute | NoWalk:
-    """Choose a walk, by planner/asp/walks.lp."""
-    model = cost_maps.model
+    walks: Walks,
+    cost_maps: CostMaps,
+    before: frozenset[Square],
+    doors: Sequence[Door],
+    rules: WalkRules,
+    question: Question,
+) -> Walk | NoWalk:
+    """Choose a walk, by planner/asp/deciding."""
+    model, first = cost_maps.model, len(question.about)
     facts = [f"begins({walks.ends[0]})", f"ends({walks.ends[1]})"]
     facts += [f"not_through({door})" for door in sorted(rules.forbidden)]
     facts += [f"door_price({door},{hundredths(price)})" for door, price in sorted(rules.prices.items())]
-    for number, (way, route) in enumerate(zip(walks.ways, walks.routes, strict=True)):
+    for number, (way, route) in enumerate(zip(walks.ways, walks.routes, strict=True), first):
         columns, rows = np.array(route.squares).T
         risk = _risk(columns[1:], rows[1:], model)
         facts.append(f"tight({number},{hundredths(route.length)},{hundredths(route.clearance)},{risk})")
         facts += [f"part({number},{name})" for name in way]
         facts += [f"through({number},{door.name})" for door in doors if leads_through(route, door)]
         facts += [f"last({number})"] * (len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares))
-    about = [_corners_in_robot_frame(route, model) for route in walks.routes]
+    if rules.ruled and walks.links:
+        facts += _facts_for_rules(walks.links, model, rules)
+    asked = question.adding(facts, (_corners_in_robot_frame(route, model) for route in walks.routes))
 
-    if rules.files:
-        facts += [*(_facts_for_rules(walks.links, model, rules) if walks.links else ()), *rules.world]
-
-    def facts_over(links: Iterable[Link]) -> list[str]:
-        """Return the facts of a choice among some of the links."""
-        return [*facts, *(fact for link in links for fact in _link_facts(link, model, doors))]
+    def over(links: Iterable[Link]) -> Question:
+        """Return the question which of some links are walked."""
+        return asked.adding(fact for link in links for fact in _link_facts(link, model, doors))
 
     links = walks.links
-    if not rules.files:  # then all prices are lengths, or come on top of them
+    if not rules.ruled:  # then all prices are lengths, or come on top of them
         offered = {name for way in walks.ways for name in way}
-        known = facts_over(link for link in links if link.name in offered)
-        with record_decisions():
-            best = solve_within([WALKS_ENCODING], known, MAX_WALK_CONFLICTS, about)
+        best = over(link for link in links if link.name in offered).bounded()
         if best.atoms is not None:  # what is longer cannot be better
-            offered |= {link.name for link in links_within(links, walks.ends, best.cost_at(0) / 100)}
+            length = best.cost_at(WALK_LEVEL) / 100
+            offered |= {link.name for link in links_within(links, walks.ends, length)}
             links = tuple(link for link in links if link.name in offered)
-    given = facts_over(links)
-    atoms = solve_within([WALKS_ENCODING, *rules.files], given, MAX_WALK_CONFLICTS, about).atoms
+    given = over(links)
+    atoms = given.bounded().atoms
     if atoms is None:
-        return NoWalk(rules_to_blame(WALKS_ENCODING, rules.files, given, lambda _: False) if rules.files else ())
+        return NoWalk(given.blamed(lambda _: False))
     steps = {str(a.arguments[1]): (str(a.arguments[0]), str(a.arguments[2])) for a in atoms if a.match("step", 3)}
     names, here = [], walks.ends[0]
     while here != walks.ends[1]:
         name, here = steps[here]
         names.append(name)
     way = tuple(names)
-    return walks.routes[walks.ways.index(way)] if way in walks.ways else walks.tighten(way)
+    route = walks.routes[walks.ways.index(way)] if way in walks.ways else walks.tighten(way)
+    return Walk(route, given)
 
 
 def _link_facts(link: Link, model: WorldModel, doors: Sequence[Door]) -> Iterator[str]:
-    """Yield the facts about a link, for planner/asp/walks.lp."""
+    """Yield the facts about a link."""
     name, (one, other) = link.name, link.ends
     yield f"link({name},{one},{other},{hundredths(link.length)},{hundredths(link.clearance)})"
     columns, rows = np.floor(link.points).astype(int).T

@@ -1,7 +1,7 @@
 """Frontiers, and other places worth a look: where the floor borders on unseen squares, or something is not settled.
 
 A frontier is floor that borders on squares that were never seen (Yamauchi 1997). All functions give candidates only;
-planner/asp/aims.lp chooses among them. Several viewpoints come in
+planner/asp/deciding/subgoals.lp chooses among them. Several viewpoints come in
 the order in which a scan meets them, row by row from the south; the squares of each ascend.
 """
 

@@ -1,8 +1,7 @@
 """Walls that were seen and never felt, and the floor from which they are felt.
 
 A movable thing that fills a doorway looks like wall; only its colour tells. Geometry says here which squares of wall
-may belong to such a thing, and how much of them is felt from where; planner/asp/feel.lp chooses where the robot feels
-next.
+may belong to such a thing, and how much of them is felt from where; planner/asp/deciding chooses where the robot feels next.
 
 Masks are (rows, columns) bool on the arrays of the view, row 0 in the south.
 """
@@ -35,7 +34,7 @@ MIN_LIKELY_OBJECT = 20  # percent: what is less likely an object is felt as wall
 class WallKind(StrEnum):
     """The reason why a stretch of wall may be a thing that can be moved, the likeliest first."""
 
-    # See planner/asp/feel.lp.
+    # See planner/asp/deciding/subgoals.lp.
 
     THING = "thing"  # it is beside a thing that was felt in the wall, and may belong to it
     NICHE = "niche"  # it is the back of a niche, as a recessed thing leaves it

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.reasoning.solver import solve_within
-from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.question import PLANNER_ASP
 from utak.planner.tasking.task_plan import Errand
 
 TASK_ENCODING = PLANNER_ASP / "task"  # a folder, with a file for each action
 MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; a bound on work, so that all machines do the same
-UNMET_PLAN = "plan"  # what is unmet where users' rules leave no plan at all, as in planner/asp/agenda.lp
+UNMET_PLAN = "plan"  # what is unmet where users' rules leave no plan at all, as in planner/asp/deciding/activities.lp
 
 
 class Proposal(NamedTuple):

@@ -12,6 +12,7 @@ HOW = ("predicted", "blocked", "slipped", "turned", "misled", "smaller", "larger
 LINKS = ("l1", "l2")
 EXPLANATIONS, REGIONS, NODES, THINGS, NUMBERS = (1, 2, 3), ("a", "b", "c"), ("n1", "n2"), ("x", "y"), (1, 2, 3)
 CLASSES, PROPERTIES, VALUES = ("square", "brick", "disc"), ("shape", "colour"), ("square", "g")
+WAYS = (4, 5, 6)  # numbers of ways
 KINDS = "attain", "explore", "pass", "settle"
 ACTIVITIES = (
     "keep",
@@ -50,21 +51,18 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "fit": (("o1", "o2"), CLASSES, (0, 1, 2, 4), NUMBERS), "open_squares": (("o1", "o2"), (0, 4, 40)),
         "full_squares": (("o1", "o2"), (9, 12)),
     },
-    "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,),
-             "aim_price": (NUMBERS, (30, 200))},
-    "agenda": {
+    "deciding": {
         "stage_goal": (("g1", "g2"), (1, 2)), "missing": (("g1", "g2"),), "unclear": (("g1", "g2"),),
         "own_goals": (), "regions_forbidden": (),
         "stages_attained": (), "constraints_doubtful": (), "hand_full": (), "robot_lost": (), "map_contradicted": (),
         "hand_unsure": (), "begun": (("clear", "feel"),), "came_to": (ACTIVITIES, ("idle", "done", "impossible")),
-    },
-    "feel": {
+        "aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": ((*NUMBERS, *WAYS),),
+        "aim_price": (NUMBERS, (30, 200)),
         "halt": (NUMBERS, (20, 90), (1, 2)), "tells": (NUMBERS, ("thing", "plain"), ("doorway", "square"), (1, 3)),
-    },
-    "walks": {
         "begins": (("j1",),), "ends": (("j2",),), "link": (LINKS, ("j1",), ("j2", "j3"), (400, 600), (50, 200)),
-        "crosses": (LINKS, ("d1", "d2")), "tight": (NUMBERS, (400, 600), (50, 200), (0, 30)), "part": (NUMBERS, LINKS),
-        "through": (NUMBERS, ("d1", "d2")), "not_through": (("d1", "d2"),), "last": (NUMBERS,), "avoid_link": (LINKS,),
+        "crosses": (LINKS, ("d1", "d2")), "tight": (WAYS, (400, 600), (50, 200), (0, 30)), "part": (WAYS, LINKS),
+        "through": (WAYS, ("d1", "d2")), "not_through": (("d1", "d2"),), "avoid_link": (LINKS,),
+        "offered": ((0, 1), ("go(1,2)", "look(1,2)", "push(o1,1,2)", "grasp(o1,north)")), "holds": (("o1",),),
     },
 }  # fmt: skip
 # By encoding: shown predicates, with the values of their arguments.
@@ -80,10 +78,10 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     },
     "rooms": {"door": (NUMBERS, (90,)), "opening": (NUMBERS,)},
     "shapes": {"shape": (("o1",), (*CLASSES, "polygon"), (2, 30, 62, 74, 98, 99))},
-    "aims": {"choose": (NUMBERS,)},
-    "agenda": {"do": (ACTIVITIES,), "stage_attained": (), "verdict": (("done", "limit", "impossible", "possible_if"),)},
-    "feel": {"feel": (NUMBERS,)},
-    "walks": {"step": (LINKS, ("j1",), ("j2", "j3")), "walked": (NUMBERS,)},
+    "deciding": {
+        "do": (ACTIVITIES,), "stage_attained": (), "verdict": (("done", "limit", "impossible", "possible_if"),),
+        "choose": (NUMBERS,), "step": (LINKS, ("j1",), ("j2", "j3")), "walked": (WAYS,), "begun": (),
+    },
 }  # fmt: skip
 
 

@@ -118,7 +118,7 @@ def test_a_conditional_literal_shows_all_its_cases() -> None:
 
 
 def test_a_conditional_literal_without_a_case_says_that_nothing_had_to_hold() -> None:
-    root = explain_decision("walks", ["tight(0,300,0,0)"], ["walked(0)"], "walked(0)").root
+    root = explain_decision("deciding", ["tight(0,300,0,0)"], ["do(errand)", "walked(0)"], "walked(0)").root
     assert "there is no part(0,L), so nothing had to hold" in {node.words for node in nodes(root)}
 
 
@@ -132,9 +132,9 @@ def test_a_greatest_value_shows_what_it_is_the_greatest_of() -> None:
 def test_a_choice_tells_what_others_would_cost() -> None:
     facts = ["begins(j1)", "ends(j2)", *(f"link(l{n},j1,j2,{far},100)" for n, far in enumerate((500, 300, 700), 1))]
     facts += ["crosses(l2,d1)", "not_through(d1)"]
-    root = explain_decision("walks", facts, ["step(l1,j1,j2)"], "step(l1,j1,j2)").root
+    root = explain_decision("deciding", facts, ["do(errand)", "step(l1,j1,j2)"], "step(l1,j1,j2)").root
     dearer, forbidden = root.rivals
-    assert (dearer.atom, dearer.verdict, dearer.level, dearer.difference) == ("step(l3,j1,j2)", "dearer", 0, 200)
+    assert (dearer.atom, dearer.verdict, dearer.level, dearer.difference) == ("step(l3,j1,j2)", "dearer", -22, 200)
     assert (forbidden.atom, forbidden.verdict) == ("step(l2,j1,j2)", "forbidden")
     (constraint,) = forbidden.forbidden_by
     assert constraint.rule.kind == "constraint" and constraint.sentence in forbidden.sentence
@@ -142,9 +142,9 @@ def test_a_choice_tells_what_others_would_cost() -> None:
 
 
 def test_a_choice_of_none_is_a_rival_too() -> None:
-    root = explain_decision("steps", ["offered(0,go(1,2))"], ["begun"], "begun").root
+    root = explain_decision("deciding", ["offered(0,go(1,2))"], ["begun", "do(errand)"], "begun").root
     (none,) = root.rivals
-    assert (none.atom, none.level, none.difference) == ("", 0, 1)
+    assert (none.atom, none.level, none.difference) == ("", -31, 1)
 
 
 def test_an_atom_that_does_not_hold_has_no_proof() -> None:
@@ -187,8 +187,8 @@ def test_the_checker_finds_a_wrong_leaf_and_a_wrong_child() -> None:
 
 def test_the_checker_finds_a_wrong_cost() -> None:
     facts = ["aim(1,explore,50)", "aim(2,explore,60)"]
-    (decision,) = best_decisions(encoding_path("aims"), " ".join(f"{fact}." for fact in facts))
-    root = explain_decision("aims", facts, ["choose(1)"], "choose(1)").root
+    (decision,) = best_decisions(encoding_path("deciding"), " ".join(f"{fact}." for fact in facts))
+    root = explain_decision("deciding", facts, ["choose(1)", "do(errand)"], "choose(1)").root
     (rival,) = (one for one in root.rivals if one.atom)
 
     for wrong in (replace(rival, difference=9), replace(rival, verdict="forbidden"), replace(rival, prices=())):

@@ -43,8 +43,8 @@ def predicates(encoding: Path) -> set[tuple[str, int]]:
     return {one for one in found if not one[0].startswith("#")}
 
 
-def test_there_are_eighteen_encodings() -> None:
-    assert encoding_names() == tuple(sorted(NAMES)) and len(NAMES) == 18
+def test_there_are_fourteen_encodings() -> None:
+    assert encoding_names() == tuple(sorted(NAMES)) and len(NAMES) == 14
 
 
 def place_of(statement: clingo.ast.AST) -> tuple[str, int, int]:

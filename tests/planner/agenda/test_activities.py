@@ -23,7 +23,7 @@ def decided(tmp_path: Path, rules: str = "") -> tuple[Decision, SolverCall]:
     model = known_model(ROOM)
     with record_decisions() as record:
         decision = Decider(NEXT_ROOM, rules=(file,) if rules else ()).decide(model, [model.place])
-    (choice,) = [call for call in record if call.encoding == "agenda"]
+    (choice,) = [call for call in record if call.encoding == "deciding"]
     return decision, choice
 
 

@@ -1,5 +1,6 @@
 """Before the robot gives up it feels walls, and clears what it finds in them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -16,8 +17,11 @@ from utak.kb.language.reader import facts_from_text
 from utak.kb.language.terms import SourceSpan
 from utak.kb.task.task import Parameter, Task
 from utak.planner.carrying.open_facts import open_facts
-from utak.planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
-from utak.planner.sights.walls import WallKind, feeling_places
+from utak.planner.deciding.feeling import feel_walls, feeling_scope, halts
+from utak.planner.navigation.subgoals import Chosen, Subgoal, choose
+from utak.planner.question import Question
+from utak.planner.sights.walls import FeelingPlace, WallKind, feeling_places
+from utak.planner.situation import Situation
 from utak.planner.stages import Stage
 from utak.simulator.run.session import Result, Session
 from utak.simulator.scenario.scenario import read_scenario
@@ -37,11 +41,18 @@ def ended(folder: Path, pull: bool = True) -> Result:
         return Session(read_scenario(folder), Settings(max_steps=120, pull=pull), make_robot, log).run()
 
 
+def halt_chosen(places: Sequence[FeelingPlace], situation: Situation) -> Subgoal | None:
+    """Return the halt that is chosen; None where none is."""
+    offered, question = halts(places, situation), Question(situation.rules)
+    found = choose(offered, situation.cost_maps, frozenset(), question, situation.rooms)
+    return found.subgoal if isinstance(found, Chosen) else None
+
+
 def test_walls_are_felt_until_none_is_left() -> None:
     model = known_model(ROOM)
     assert isinstance(getattr(feel_walls(turn_of(UTAK, situation_of(model))), "command", None), Move)
     assert feel_walls(turn_of(UTAK, situation_of(all_felt(model)))) is None
-    assert choose_halt([], situation_of(model)) is None
+    assert halt_chosen([], situation_of(model)) is None
 
 
 def test_where_no_door_is_it_does_not_matter_how_many_things_there_are() -> None:
@@ -75,7 +86,7 @@ def test_rules_say_in_which_walls_things_are_supposed(tmp_path: Path) -> None:
     rules.write_text("supposed(K, S, 0) :- counted_wall(K, S, _), K != unseen, not held(_).")
     places, told = feeling_places(situation.cost_maps), []
     for given in ((), (rules,)):
-        halt = choose_halt(places, replace(situation, rules=given))
+        halt = halt_chosen(places, replace(situation, rules=given))
         assert halt is not None
         told.append(next(set(place.squares) for place in places if place.square == halt.squares[0]))
     assert told == [{WallKind.THIN}, {WallKind.UNSEEN}]
@@ -87,7 +98,7 @@ def test_a_room_is_felt_with_few_halts() -> None:
     while True:
         situation = situation_of(model)
         scope = feeling_scope(turn_of(UTAK, situation))
-        halt = choose_halt(feeling_places(situation.cost_maps, scope), situation)
+        halt = halt_chosen(feeling_places(situation.cost_maps, scope), situation)
         if halt is None:
             break
         row, column = divmod(int(halt.squares[0]), model.labels.shape[1])

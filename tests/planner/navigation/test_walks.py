@@ -13,7 +13,8 @@ import utak
 from tests.kb.drawings import known_model
 from utak.geometry import Screen
 from utak.planner.navigation.network import network
-from utak.planner.navigation.walks import WalkRules, choose_walk, find_walks
+from utak.planner.navigation.walks import Walk, WalkRules, choose_walk, find_walks
+from utak.planner.question import Question
 from utak.planner.screen.projection import CostMaps
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -97,8 +98,10 @@ def chosen(files: tuple[Path, ...] = (), far: int = 17, floor: Sequence[str] = P
     cost_maps = CostMaps(model)
     row, column = model.view.locate(model.place[0] + far, model.place[1])
     goal = np.array([row * model.labels.shape[1] + column])
-    walk = choose_walk(find_walks(cost_maps, 0, goal, "skeleton"), cost_maps, frozenset(), (), WalkRules(files=files))
-    assert walk is not None
+    rules, walks = WalkRules(ruled=bool(files)), find_walks(cost_maps, 0, goal, "skeleton")
+    found = choose_walk(walks, cost_maps, frozenset(), (), rules, Question(files))
+    assert isinstance(found, Walk)
+    walk = found.route
     assert walk.squares[0] == cost_maps.here
     assert walk.squares[-1] == (column, row)
     assert cost_maps.free(0)[tuple(np.array(walk.squares).T[::-1])].all()

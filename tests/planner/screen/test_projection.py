@@ -15,9 +15,11 @@ from tests.kb.eyes import random_room
 from tests.tables import few
 from utak.kb.mapping.occupancy import FREE, OPEN
 from utak.kb.world.model import WorldModel
+from utak.kb.world.rooms import NO_ROOMS
 from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
-from utak.planner.navigation.subgoals import NoSubgoal, Subgoal, choose
-from utak.planner.navigation.walks import WalkRules, choose_walk, find_walks, walks_along
+from utak.planner.navigation.subgoals import Chosen, NoSubgoal, Subgoal, choose
+from utak.planner.navigation.walks import Walk, WalkRules, choose_walk, find_walks, walks_along
+from utak.planner.question import Question
 from utak.planner.screen.moves import (
     CARRYING_PACE,
     LEEWAY_TOLERANCE,
@@ -151,10 +153,12 @@ def test_routes_are_free_connected_and_distinct() -> None:
         assert all(cost_maps.free(0)[y, x] for x, y in way.squares)
         assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
     assert found[0].length <= found[1].length
-    chosen = choose_walk(walks_along(found), cost_maps, frozenset(), (), WalkRules())
-    assert chosen == found[0]
-    sticky = choose_walk(walks_along(found[:2]), cost_maps, frozenset(found[1].squares), (), WalkRules())
-    assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
+    chosen = choose_walk(walks_along(found), cost_maps, frozenset(), (), WalkRules(), Question())
+    assert isinstance(chosen, Walk) and chosen.route == found[0]
+    before = frozenset(found[1].squares)
+    sticky = choose_walk(walks_along(found[:2]), cost_maps, before, (), WalkRules(), Question())
+    assert isinstance(sticky, Walk)
+    assert sticky.route == (found[1] if found[1].length - found[0].length < 2 else found[0])
 
 
 def test_the_route_to_the_own_square_has_one_square() -> None:
@@ -184,13 +188,18 @@ def test_the_choice_of_a_subgoal() -> None:
     cost_maps = CostMaps(model)
     near, far = Subgoal("explore", flat(model, 1, 0), "near"), Subgoal("explore", flat(model, 12, 0), "far")
     goal = Subgoal("attain", flat(model, 12, 3), "there")
-    assert choose([near, far], cost_maps, frozenset()) == near
-    assert choose([near, far, goal], cost_maps, frozenset()) == goal
     wall = Subgoal("attain", flat(model, 14, 0), "in the wall")
-    assert choose([wall, far], cost_maps, frozenset()) == far
-    assert choose([wall], cost_maps, frozenset()) == NoSubgoal()
-    assert choose([near._replace(price=30.0), far], cost_maps, frozenset()) == far
-    assert choose([], cost_maps, frozenset()) == NoSubgoal()
+    for offered, expected in (
+        ([near, far], near),
+        ([near, far, goal], goal),
+        ([wall, far], far),
+        ([near._replace(price=30.0), far], far),
+    ):
+        chosen = choose(offered, cost_maps, frozenset(), Question(about=("g1: a goal",)), NO_ROOMS)
+        assert isinstance(chosen, Chosen)
+        assert chosen.subgoal is expected or chosen.subgoal == expected
+    for offered in ([wall], []):
+        assert choose(offered, cost_maps, frozenset(), Question(), NO_ROOMS) == NoSubgoal()
 
 
 def test_frontiers_border_on_unseen_squares() -> None:

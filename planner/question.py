@@ -1,0 +1,72 @@
+"""The question what to do, which one decision puts to planner/asp/deciding.
+
+The parts of a decision add their facts one after the other: what is left to do for the stage, the subgoals of the
+activity that was chosen, links and ways to the subgoal that was chosen, at last the steps of the robot. Each time all
+that was given before is asked with them, so users' rules may speak of all of it together. The last answer is the whole
+decision, and the one that is recorded.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import clingo
+
+from utak.kb.language.vocabulary import Signature
+from utak.kb.reasoning.encodings import BoundedAnswer
+from utak.kb.reasoning.solver import solve, solve_within
+from utak.kb.reasoning.user_rules import rules_speak_of, rules_to_blame
+from utak.kb.tracing.decisions import record_decisions
+
+PLANNER_ASP = Path(__file__).resolve().parent / "asp"  # the folder of the planner's encodings
+DECIDING = PLANNER_ASP / "deciding"
+MAX_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
+Atoms = Sequence[clingo.Symbol]
+
+
+class Question(NamedTuple):
+    """What is given so far."""
+
+    rules: tuple[Path, ...] = ()  # the users' rule files
+    facts: tuple[str, ...] = ()  # without full stops
+    # What the candidates are: a numbered one by its number, and others in texts that begin with their name and a colon
+    about: tuple[Any, ...] = ()
+
+    def adding(self, facts: Iterable[str], about: Iterable[Any] = ()) -> "Question":
+        """Return the question with more given."""
+        return self._replace(facts=(*self.facts, *facts), about=(*self.about, *about))
+
+    def keeping(self, choice: str) -> "Question":
+        """Return the question with a choice that was made."""
+        # Without users' rules what is given later changes no choice that was made before.
+        return self.adding([f"kept({choice})"]) if self.rules else self
+
+    def speaks_of(self, predicates: Iterable[Signature]) -> bool:
+        """Return whether users' rules that take part speak of any of some predicates."""
+        return rules_speak_of(DECIDING.stem, self.rules, predicates)
+
+    def answer(self) -> list[clingo.Symbol] | None:
+        """Return the shown atoms of the best answer; None when there is none."""
+        with record_decisions():  # a part of a decision
+            return self.recorded()
+
+    def recorded(self) -> list[clingo.Symbol] | None:
+        """Return the same, and write it into the record of decisions."""
+        return solve([DECIDING, *self.rules], self.facts, about=self.about)
+
+    def bounded(self) -> BoundedAnswer:
+        """Return the best answer that is found within MAX_CONFLICTS conflicts."""
+        with record_decisions():
+            return solve_within([DECIDING, *self.rules], self.facts, MAX_CONFLICTS)
+
+    def blamed(self, is_bad: Callable[[Atoms], bool]) -> tuple[str, ...]:
+        """Return the users' rules because of which the answer is bad, or there is none, as `rules.lp:3`."""
+        return rules_to_blame(DECIDING, self.rules, self.facts, is_bad) if self.rules else ()
+
+
+NO_QUESTION = Question()  # nothing is given
+
+
+def argument(answer: Iterable[clingo.Symbol], name: str) -> clingo.Symbol | None:
+    """Return the first argument of the first atom of a name in an answer; None where there is none."""
+    return next((atom.arguments[0] for atom in answer if atom.name == name), None)
