@@ -7,8 +7,8 @@ constraints   regions that are kept off, and what a thing sweeps
 per_model     answers that depend on a world model, computed once for it
 situation     what a decision depends on: beliefs, cost maps, rooms, what parameters mean
 journal       what a step adds to the record of decisions and places
-steps         the steps of the robot itself, of which each command is one
-step_rules    whether steps may be done, by planner/asp/deciding/steps.lp and users' rules
+steps         the steps of the robot itself, of which each command is one, and whether they may be done
+question      what a decision puts to planner/asp/deciding
 advice        what the plan executor advises
 subgoal_kind  the kinds of subgoals
 under_way     what is being planned, in words

@@ -10,7 +10,7 @@ from utak.geometry.kernels.arrays import XY
 from utak.kb.language.atoms import atom_parts
 from utak.kb.localisation.known.state import TrackerState
 from utak.kb.tracing.decisions import SolverCall
-from utak.planner.question import DECIDING
+from utak.planner.question import DECIDING_ENCODING
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
 
@@ -58,6 +58,6 @@ def _rounded(place: XY) -> XY:
 
 def _routes(call: SolverCall) -> list[dict[str, Any]]:
     """Return the routes of a decision, each with its points and whether it was chosen; [] where none was offered."""
-    tight = (atom_parts(fact) for fact in call.facts) if call.encoding == DECIDING.stem and call.answer else ()
+    tight = (atom_parts(fact) for fact in call.facts) if call.encoding == DECIDING_ENCODING.stem and call.answer else ()
     numbers = [int(arguments[0]) for name, arguments in tight if name == "tight"]
     return [{"points": call.about[n], "chosen": f"walked({n})" in (call.answer or ())} for n in numbers]

@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import clingo
-
 from utak.kb.language.vocabulary import Signature
 from utak.kb.reasoning.encodings import BoundedAnswer
 from utak.kb.reasoning.solver import solve, solve_within
@@ -19,13 +17,13 @@ from utak.kb.reasoning.user_rules import rules_speak_of, rules_to_blame
 from utak.kb.tracing.decisions import record_decisions
 
 PLANNER_ASP = Path(__file__).resolve().parent / "asp"  # the folder of the planner's encodings
-DECIDING = PLANNER_ASP / "deciding"
-MAX_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
-Atoms = Sequence[clingo.Symbol]
+DECIDING_ENCODING = PLANNER_ASP / "deciding"
+MAX_DECIDING_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
+Atoms = Sequence[Any]  # as clingo shows them
 
 
 class Question(NamedTuple):
-    """What is given so far."""
+    """All that is given until now, and users' rules."""
 
     rules: tuple[Path, ...] = ()  # the users' rule files
     facts: tuple[str, ...] = ()  # without full stops
@@ -43,30 +41,30 @@ class Question(NamedTuple):
 
     def speaks_of(self, predicates: Iterable[Signature]) -> bool:
         """Return whether users' rules that take part speak of any of some predicates."""
-        return rules_speak_of(DECIDING.stem, self.rules, predicates)
+        return rules_speak_of(DECIDING_ENCODING.stem, self.rules, predicates)
 
-    def answer(self) -> list[clingo.Symbol] | None:
+    def answer(self) -> list[Any] | None:
         """Return the shown atoms of the best answer; None when there is none."""
         with record_decisions():  # a part of a decision
             return self.recorded()
 
-    def recorded(self) -> list[clingo.Symbol] | None:
+    def recorded(self) -> list[Any] | None:
         """Return the same, and write it into the record of decisions."""
-        return solve([DECIDING, *self.rules], self.facts, about=self.about)
+        return solve([DECIDING_ENCODING, *self.rules], self.facts, about=self.about)
 
     def bounded(self) -> BoundedAnswer:
-        """Return the best answer that is found within MAX_CONFLICTS conflicts."""
+        """Return the best answer that is found within MAX_DECIDING_CONFLICTS conflicts."""
         with record_decisions():
-            return solve_within([DECIDING, *self.rules], self.facts, MAX_CONFLICTS)
+            return solve_within([DECIDING_ENCODING, *self.rules], self.facts, MAX_DECIDING_CONFLICTS)
 
     def blamed(self, is_bad: Callable[[Atoms], bool]) -> tuple[str, ...]:
         """Return the users' rules because of which the answer is bad, or there is none, as `rules.lp:3`."""
-        return rules_to_blame(DECIDING, self.rules, self.facts, is_bad) if self.rules else ()
+        return rules_to_blame(DECIDING_ENCODING, self.rules, self.facts, is_bad) if self.rules else ()
 
 
 NO_QUESTION = Question()  # nothing is given
 
 
-def argument(answer: Iterable[clingo.Symbol], name: str) -> clingo.Symbol | None:
+def argument(answer: Iterable[Any], name: str) -> Any:
     """Return the first argument of the first atom of a name in an answer; None where there is none."""
     return next((atom.arguments[0] for atom in answer if atom.name == name), None)

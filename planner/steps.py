@@ -1,7 +1,8 @@
 """The steps of the robot itself, as kb/asp/belief.lp declares step/2; each command is one.
 
 A decision names the steps with which the plan goes on: first that of its command, then what the robot means to do after
-it, such as to look where it goes, or what is left of a plan that carries a thing.
+it, such as to look where it goes, or what is left of a plan that carries a thing. The rules of planner/asp/deciding
+tell, with those of users, whether they may be done one after the other.
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,12 @@ from utak.kb.body import Command, Grasp, Move, Push, Turn
 from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.world.model import WorldModel, hundredths
 from utak.planner.decision import Decision
+from utak.planner.question import Atoms, Question
+from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
+
+# The predicates of planner/asp/deciding about the steps of the robot alone.
+STEP_PREDICATES = (("offered", 2), ("step", 2), ("begun", 0), ("in_hand", 2), ("there", 3), ("holds", 1))
 
 
 def step_of_command(command: Command, model: WorldModel) -> str:
@@ -76,6 +82,40 @@ def towards(kind: str, place: XY, model: WorldModel) -> tuple[str, ...]:
     there = tuple(map(hundredths, model.frame.place_to_utak(*place)))
     then = () if kind == SubgoalKind.ATTAIN else (_term("feel" if kind == SubgoalKind.FEEL else "look", *there),)
     return (_term("go", *there), *then)
+
+
+def are_ruled(situation: Situation) -> bool:
+    """Return whether users' rules speak of the steps of the robot."""
+    return situation.question.speaks_of(STEP_PREDICATES)
+
+
+def refusal(steps: Sequence[str], situation: Situation, question: Question | None = None, last: bool = False) -> str:
+    """Return why some steps, first the next one, may not be done, in words; "" where they may."""
+    # question : where what was chosen before has one of its own. last : whether the answer is to be recorded.
+    held = situation.model.held
+    given = (question or situation.question).adding(f"offered({number},{step})" for number, step in enumerate(steps))
+    given = given.adding([f"holds({held})"] * (held is not None))
+    answer = given.recorded() if last else given.answer()
+    if _are_begun(answer or ()):
+        return ""
+    blamed = given.blamed(lambda atoms: not _are_begun(atoms))
+    if not blamed:
+        return f"{', '.join(steps)} cannot be done one after the other"
+    return forbidden_by(blamed, ", ".join(steps))
+
+
+def forbidden_by(rules: Sequence[str], what: str) -> str:
+    """Return in words that users' rules, such as `rules.lp:3`, forbid something."""
+    return (
+        f"the rule at {rules[0]} forbids {what}"
+        if len(rules) == 1
+        else f"the rules at {' and '.join(rules)} forbid {what}"
+    )
+
+
+def _are_begun(answer: Atoms) -> bool:
+    """Return whether steps are begun, by an answer."""
+    return any(atom.name == "begun" for atom in answer)
 
 
 def _term(name: str, *arguments: object) -> str:

@@ -14,7 +14,7 @@ from utak.kb.language.goal_words import GOAL_WORDS, PLACE_FACTS, ROBOT, WRAPPING
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, ROOT_NODE, VERGE_NODE
 
-DECIDING = "deciding"  # the encoding that chooses what is done, and with which verdict a run ends
+DECIDED_BY = "deciding"  # the encoding that chooses what is done, and with which verdict a run ends
 CHOICES = {  # the predicates of its choices, and what was chosen, in words
     "do": "this activity was chosen",
     "choose": "this subgoal was chosen",
@@ -156,14 +156,14 @@ def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
 
 def _ruled_verdicts(beliefs: FactExplainer, claim: str, step: int) -> Iterator[Reason]:
     """Yield the reason that the agenda has for a verdict at a step: what each activity came to; nothing without it."""
-    asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDING]
+    asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDED_BY]
     if asked and claim in (asked[-1].answer or ()):
         yield replace(beliefs.prove(asked[-1], claim, step), because="the agenda ends with this verdict")
 
 
 def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
     """Yield what was chosen last at a step: why, and what was refused."""
-    asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDING and call.answer]
+    asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDED_BY and call.answer]
     for call in asked[-1:]:
         for predicate in CHOICES:
             for atom in call.answer or ():

@@ -120,11 +120,13 @@ ACTIVITIES: Forms = {
     "resume": (BEGUN_ARGUMENT,),
 }
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
+KEPT_CHOICES: Forms = {"do": (ACTIVITY_ARGUMENT,), "choose": (NUMBER_ARGUMENT,)}  # made in one decision
 # By the name of an argument type of compound terms: these terms.
 COMPOUND_FORMS: Mapping[str, Forms] = {
     "step": PLAN_STEPS,
     ROBOT_STEP_ARGUMENT.name: ROBOT_STEP_FORMS,
     "activity": ACTIVITIES,
+    "choice": KEPT_CHOICES,
     "fact": STATED_FACTS,
     "act": ACTS,
     "question": EXCLUSIVE_QUESTIONS,
@@ -310,6 +312,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
         ("do", 1): (ACTIVITY_ARGUMENT,),
+        ("kept", 1): (_compound_argument("choice", "choices", KEPT_CHOICES),),
         ("verdict", 1): (VERDICT_ARGUMENT,),
         ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
         ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),

@@ -30,12 +30,11 @@ from utak.planner.goals.placement import meets_any_end, to_view_frame
 from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.problem import PlacedGoal
 from utak.planner.per_model import PerModel
-from utak.planner.question import DECIDING, Question
+from utak.planner.question import DECIDING_ENCODING, Question
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
-from utak.planner.step_rules import refusal
-from utak.planner.steps import steps_of
+from utak.planner.steps import refusal, steps_of
 from utak.planner.tasking.rule_effects import rules_close_all_doors, rules_that_close
 from utak.planner.tasking.setting import place_name, waiting_goal
 from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
@@ -197,7 +196,7 @@ class Activities:
             "map_contradicted": model.anew and model.shaken,
         }
         yield from (name for name, holds in given.items() if holds)
-        yield from turn.situation.facts_for_rules(DECIDING.stem)
+        yield from turn.situation.facts_for_rules(DECIDING_ENCODING.stem)
 
     def _do(self, activity: Activity, turn: StageTurn, last: Decision) -> Decision:
         """Return what an activity comes to."""

@@ -37,8 +37,7 @@ from utak.planner.goals.placement import (
 from utak.planner.screen.moves import is_at, orientation_is_uncertain
 from utak.planner.screen.projection import UNSEEN_LEVEL, dilate
 from utak.planner.situation import Situation
-from utak.planner.step_rules import are_ruled, refusal
-from utak.planner.steps import of_legs, release
+from utak.planner.steps import are_ruled, of_legs, refusal, release
 from utak.planner.under_way import UNDER_WAY
 
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed

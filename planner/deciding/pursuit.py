@@ -38,8 +38,7 @@ from utak.planner.screen.projection import SquareIndices
 from utak.planner.sights.frontiers import VIEW_SPACING
 from utak.planner.situation import Situation
 from utak.planner.stages import ORIGIN_GOALS, Stage
-from utak.planner.step_rules import are_ruled, forbidden_by, refusal
-from utak.planner.steps import towards
+from utak.planner.steps import are_ruled, forbidden_by, refusal, towards
 from utak.planner.subgoal_kind import SubgoalKind
 
 

@@ -1,7 +1,7 @@
 """Walls that were seen and never felt, and the floor from which they are felt.
 
 A movable thing that fills a doorway looks like wall; only its colour tells. Geometry says here which squares of wall
-may belong to such a thing, and how much of them is felt from where; planner/asp/deciding chooses where the robot feels next.
+may belong to such a thing, and how much of them is felt from where; planner/asp/deciding chooses where it is felt next.
 
 Masks are (rows, columns) bool on the arrays of the view, row 0 in the south.
 """
