@@ -107,6 +107,8 @@ class Situation:
     as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     # By parameter of the task that means nothing seen: the places where it may be, with percent (kb/asp/chances.lp)
     may_be: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    # By the name of an object: squares across passages through which it surely does not fit
+    too_narrow: Mapping[str, Bools] = field(default_factory=dict)
     question: Question = NO_QUESTION  # what to do: what was given so far in this decision
 
     @cached_property
@@ -208,6 +210,10 @@ class Situation:
     def with_closed(self, closed: frozenset[str]) -> "Situation":
         """Return the situation with some more doors closed, and cost maps on which no way leads through a shut one."""
         return replace(self, closed=self.closed | closed).within_shut_doors()
+
+    def with_too_narrow(self, name: str, mask: Bools) -> "Situation":
+        """Return the situation with squares across passages through which an object surely does not fit."""
+        return replace(self, too_narrow={**self.too_narrow, name: mask})
 
     def within_shut_doors(self, others: Iterable[Door] = ()) -> "Situation":
         """Return the situation with cost maps on which no way leads through a door that is shut to the robot."""

@@ -9,6 +9,7 @@ import heapq
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import combinations, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,6 +41,39 @@ class Bottleneck:
     # The two points (x, y) of the obstacles that make it, in no order that means anything
     sides: tuple[tuple[float, float], tuple[float, float]]
     width: float  # distance between them
+
+
+def least_gap(body: Any) -> float:
+    """Return a width, squares: the body passes between no two points closer than that, whether it turns or not.
+
+    While a convex part of the body passes the line between two points, it meets that in a chord between them. The
+    supporting lines at the ends of the chord meet before the line at first, and behind it at last; once they are
+    parallel, and then the part is at most as wide as the chord. So no convex part passes a gap narrower than its least
+    width (G. Strang, "The width of a chair", 1982). 0 where no convex part is known: of a body that is not convex,
+    rectangles along its sides alone are looked at.
+    """
+    ring = np.array(shapely.normalize(body).exterior.coords)
+    if body.convex_hull.area - body.area <= EQUAL_CLEARANCE:
+        return _least_width(ring)
+    dx, dy = ring[1] - ring[0]
+    upright = affinity.rotate(body, -math.degrees(math.atan2(dy, dx)), origin=(0.0, 0.0))
+    corners = np.array(upright.exterior.coords)
+    xs, ys = (np.unique(np.round(corners[:, axis], 9)) for axis in (0, 1))
+    boxes = [
+        shapely.box(west, south, east, north)
+        for (west, east), (south, north) in product(combinations(xs, 2), combinations(ys, 2))
+    ]
+    whole = upright.buffer(EQUAL_CLEARANCE, join_style="mitre")
+    return max((min(b[2] - b[0], b[3] - b[1]) for b in (box.bounds for box in boxes if whole.covers(box))), default=0.0)
+
+
+def _least_width(ring: Floats) -> float:
+    """Return the least width of a convex polygon: across one of its sides. ring : (n + 1, 2) its closed boundary."""
+    sides = np.diff(ring, axis=0)
+    sides = sides[np.hypot(*sides.T) > 0]
+    normals = np.stack([-sides[:, 1], sides[:, 0]]) / np.hypot(*sides.T)
+    across = ring @ normals
+    return float((across.max(0) - across.min(0)).min())
 
 
 def find_bottleneck(obstacle_field: ObstacleField, goals: Bools, reached: Floats, radius: float) -> Bottleneck | None:

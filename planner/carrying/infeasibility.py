@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from utak.geometry.cspace.bottleneck import Bottleneck
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.plan_carrying import CarryingPlan
 from utak.kb.objects.held_object import is_grid_aligned
@@ -71,10 +72,14 @@ class Infeasibility:
             return ()
         return (f"geometry refuted every plan for {self.refutation.name}" if self.refutation else self.message,)
 
+    @property
+    def passage(self) -> Bottleneck | None:
+        """The passage that is too narrow, view frame; None for none."""
+        return None if self.refutation is None else self.refutation.closest.passage
+
     def neck(self) -> XY | None:
         """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
-        passage = None if self.refutation is None else self.refutation.closest.passage
-        return None if passage is None else passage.place
+        return None if self.passage is None else self.passage.place
 
     def unless(self) -> str:
         """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""

@@ -3,6 +3,7 @@
 Shapes and ends (geometry.manipulation.goals) are in the view frame, in squares, as all manipulation planning is.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
@@ -12,7 +13,7 @@ import numpy as np
 import shapely
 
 from utak.geometry.kernels.arrays import Bools
-from utak.geometry.manipulation.goals import At, End, Inside, is_goal_met
+from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, is_goal_met, shape_at_pose
 from utak.geometry.motion.se2 import Pose, Translate
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.goal_words import ROBOT
@@ -135,7 +136,29 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
     if not situation.lenient:
         mask |= situation.region_kept_off(ROBOT, margin)
     mask |= neck_squares(doors, situation.model.labels.shape, margin)
+    if node.name in situation.too_narrow:
+        mask |= np.pad(situation.too_narrow[node.name], margin)
     return mask & ~np.pad(situation.model.mask(node.patch), margin)
+
+
+def lies_clear_of(mask: Bools, node: Node, ends: Mapping[str, End], situation: Situation) -> bool:
+    """Return whether an object lies on none of some squares, (rows, columns) bool, now and wherever it meets an end."""
+    rows, columns = np.nonzero(mask)
+    squares = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
+    shape = to_view_frame(node.polygon, situation)
+    reach = math.dist(shape.bounds[:2], shape.bounds[2:])
+
+    def is_clear(end: End) -> bool:
+        """Return whether the object touches none of the squares wherever it meets an end."""
+        if isinstance(end, Inside):
+            return bool(shapely.area(end.polygon.intersection(squares)) == 0)
+        if isinstance(end, At):
+            return not shapely.intersects(shape_at_pose(shape, end.pose), squares)
+        if isinstance(end, InCorner | Between):
+            return bool(squares.distance(shapely.Point(end.x, end.y)) > 2 * end.slack + reach)
+        return False
+
+    return not shapely.intersects(shape, squares) and all(map(is_clear, ends.values()))
 
 
 def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
