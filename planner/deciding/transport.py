@@ -7,6 +7,7 @@ infeasibility certificate proves.
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from math import cos
 
 import numpy as np
 
@@ -270,13 +271,18 @@ class Transporter:
     ) -> tuple[Infeasibility, Decision | None]:
         """Return a refusal that counts with passages measured too narrow, and the next command to measure another."""
         situation, least = turn.situation, least_gap(least_outline(node))
-        self._gaps.note(len(turn.track), situation.model)
-        shut = np.zeros_like(situation.model.space)
-        while refused.unless() and (gap := self._gaps.gap_of(refused.passage, situation.model)) and gap.width < least:
+        model = situation.model
+        self._gaps.note(len(turn.track), model)
+        shut = np.zeros_like(model.space)
+        while (
+            refused.unless()
+            and (gap := self._gaps.gap_of(refused.passage, model))
+            and gap.width / cos(model.spread) < least
+        ):
             exact = self._gaps.is_exact(gap)
             if exact is None:
                 return refused, self._measure_gap(gap, node, turn)
-            shut = shut | situation.model.squares(gap.squares)
+            shut = shut | model.squares(gap.squares)
             if not exact or not lies_clear_of(shut, node, ends, situation):
                 break
             again = turn.executor.infeasibility(node, ends, situation.with_too_narrow(node.name, shut))

@@ -1,9 +1,9 @@
 """How wide a passage is: the robot walks in it against one side and then against the other.
 
-A wall lies anywhere in the squares in which it is seen. Where a walk along a row of floor ends in the last square of
-it, although it was meant to lead on, the wall begins at the line behind that square: nothing else stops a robot, and no
-wall is in a square that is free. So what is between two such ends is known exactly. Where the robot comes into a square
-of the wall, this lies further back, and it is not known how far.
+A wall lies anywhere in the squares in which it is seen. Where a walk along a row of floor is stopped, and a short walk
+back leads into the last square of the row, the wall begins at most that far behind the line between the squares:
+nothing else stops a robot, and no wall is in a square that is free. So what is between two such ends is known that
+well. Where the robot is still in a square of the wall, this lies further back, and it is not known how far.
 """
 
 from typing import NamedTuple
@@ -12,8 +12,11 @@ import numpy as np
 
 from utak.geometry.cspace.bottleneck import Bottleneck
 from utak.geometry.kernels.arrays import XY, Bools, Square
+from utak.kb.body import DIRECTIONS
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.world.model import WorldModel
 
+BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
 BEYOND = 0.75  # squares behind the line at which the wall may begin, to which the robot is meant to walk; a convention
 MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
 
@@ -24,15 +27,25 @@ class Gap(NamedTuple):
     squares: tuple[Square, ...]  # in their order, from west to east or from south to north
 
     @property
-    def width(self) -> int:
-        """Return how wide it is at least."""
-        return len(self.squares)
+    def width(self) -> float:
+        """Return how wide it is at most where it is measured, in squares."""
+        return len(self.squares) + 2 * BACK
 
     @property
     def step(self) -> Square:
         """Return the step (x, y) from one square to the next."""
         (x, y), (far_x, far_y) = self.squares[0], self.squares[-1]
         return (1, 0) if far_x > x else (0, 1) if far_y > y else (0, 0)
+
+
+class _Walk(NamedTuple):
+    """A walk against a side of a gap, or a little back from it."""
+
+    looks: int  # how many looks there were before it
+    square: Square  # the last one of the row
+    side: int  # 0 or -1: the index of that square in the row
+    step: Square  # towards the wall
+    back: bool = False  # whether it leads back
 
 
 class GapMeasurer:
@@ -44,7 +57,7 @@ class GapMeasurer:
             tuple[Square, int], bool
         ] = {}  # by the last square and the side: whether the wall begins there
         self._is_anew = False  # whether the map was begun anew since
-        self._walk: tuple[int, Square, int] | None = None  # the look before the newest walk, the last square, the side
+        self._walk: _Walk | None = None  # the newest walk of these
 
     def gap_of(self, passage: Bottleneck | None, model: WorldModel) -> Gap | None:
         """Return the row of floor across a passage, view frame; None for no row of whole squares from wall to wall."""
@@ -64,41 +77,62 @@ class GapMeasurer:
         return next(iter(sorted(gaps, key=lambda gap: self.is_exact(gap) is not True)), None)
 
     def is_exact(self, gap: Gap) -> bool | None:
-        """Return whether a gap is as wide as its squares; False where it is wider, None where that is not known."""
+        """Return whether a gap is at most as wide as its squares and BACK on each side; None where that is not known."""
         sides = [self._exact.get((gap.squares[side], side)) for side in (0, -1)]
         return False if False in sides else None if None in sides else True
 
     def end_of_walk(self, gap: Gap, looks: int, model: WorldModel) -> XY | None:
         """Return where to the robot shall walk from within a gap, map frame; None while it is not there."""
         # looks : how many there were.
-        here = (int(np.floor(model.place[0])), int(np.floor(model.place[1])))
-        if here not in gap.squares:
-            return None
-        across = 1 if gap.step[0] else 0
-        if abs(model.place[across] % 1 - 0.5) > MIDDLE:
+        (x, y), walk = model.place, self._walk
+        if walk is not None:  # it stands against the wall now
+            self._walk = walk._replace(looks=looks, back=True)
+            return x - BACK * walk.step[0], y - BACK * walk.step[1]
+        if _square(model.place) not in gap.squares or abs((y if gap.step[0] else x) % 1 - 0.5) > MIDDLE:
             return None
         side = 0 if (gap.squares[0], 0) not in self._exact else -1
-        (x, y), way = gap.squares[side], -1 if side == 0 else 1
-        self._walk = looks, gap.squares[side], side
-        end = x + 0.5 + way * gap.step[0] * (0.5 + BEYOND), y + 0.5 + way * gap.step[1] * (0.5 + BEYOND)
-        return (end[0], model.place[1]) if gap.step[0] else (model.place[0], end[1])
+        step = gap.step if side else (-gap.step[0], -gap.step[1])
+        self._walk = _Walk(looks, gap.squares[side], side, step)
+        column, row = gap.squares[side]
+        far = step[0] * (column + 0.5 - x) + step[1] * (row + 0.5 - y) + 0.5 + BEYOND
+        return x + far * step[0], y + far * step[1]
 
     def note(self, looks: int, model: WorldModel) -> None:
-        """Note whether the newest walk, when it was one of these, ended in the last square, with nothing in doubt."""
+        """Note whether the newest walk, when it was one back from a wall, ended in the last square of the row."""
         if model.anew and not self._is_anew:
             self._is_anew, self._walk, self._exact = True, None, {}
-        if self._walk is not None:
-            before, square, side = self._walk
-            here = int(np.floor(model.place[0])), int(np.floor(model.place[1]))
-            self._exact[square, side] = before + 1 == looks and model.beyond_doubt and here == square
-            self._walk = None
+        walk = self._walk
+        if walk is None or (walk.looks + 1 == looks and not walk.back):
+            return
+        sure = walk.looks + 1 == looks and model.view.sure and not (model.lost or model.contradicted)
+        beyond = walk.square[0] + walk.step[0], walk.square[1] + walk.step[1]
+        self._exact[walk.square, walk.side] = (
+            sure and _feels_from(walk.square, model) and not _feels_from(beyond, model)
+        )
+        self._walk = None
+
+
+def _feels_from(square: Square, model: WorldModel) -> bool:
+    """Return whether the squares that are settled about a square, map frame, are felt as if the robot stood in it."""
+    row, column = model.view.locate(*square)
+    offset = {name: way for way, name in model.frame.directions().items()}
+    return all(
+        int(model.view.state[row + offset[name][1], column + offset[name][0]]) in (OPEN, OCCUPIED if felt else FREE)
+        for name, felt in zip(DIRECTIONS, model.touch, strict=True)
+        if name in offset
+    )
+
+
+def _square(place: XY) -> Square:
+    """Return the square (x, y) in which a point lies."""
+    return int(np.floor(place[0])), int(np.floor(place[1]))
 
 
 def _is_from_wall_to_wall(line: list[Square], model: WorldModel) -> bool:
-    """Return whether a row of squares (column, row) of the view is floor between two squares of verge, beyond doubt."""
+    """Return whether a row of squares (column, row) of the view is settled as floor, between two squares of verge."""
     rows, columns = model.labels.shape
     if not all(0 <= x < columns and 0 <= y < rows for x, y in line):
         return False
     xs, ys = np.array(line).T
-    inner: Bools = model.space[ys, xs][1:-1] & model.certain[ys, xs][1:-1]
+    inner: Bools = model.space[ys, xs][1:-1] & (model.view.state[ys, xs][1:-1] == FREE)
     return bool(inner.all() and model.verge[ys[[0, -1]], xs[[0, -1]]].all())
