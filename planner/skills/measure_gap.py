@@ -6,6 +6,8 @@ nothing else stops a robot, and no wall is in a square that is free. So what is 
 well. Where the robot is still in a square of the wall, this lies further back, and it is not known how far.
 """
 
+import math
+from itertools import count, product
 from typing import NamedTuple
 
 import numpy as np
@@ -67,17 +69,18 @@ class GapMeasurer:
         low, high = sorted(side[axis] for side in passage.sides)
         if round(low) != low or round(high) != high or high - low < 2:
             return None
-        gaps = []
-        for across in dict.fromkeys(
-            int(np.floor(side[1 - axis] + off)) for side in passage.sides for off in (0.0, -1.0)
-        ):
-            line = [(across, along) if axis else (along, across) for along in range(int(low) - 1, int(high) + 1)]
-            if _is_from_wall_to_wall(line, model):
-                gaps.append(Gap(tuple((x + model.view.west, y + model.view.south) for x, y in line[1:-1])))
-        return next(iter(sorted(gaps, key=lambda gap: self.is_exact(gap) is not True)), None)
+        gaps = dict[int, Gap]()  # by the place of the row along the passage, as far as its walls are in line
+        begins = {math.floor(side[1 - axis] + off) for side in passage.sides for off in (0.0, -1.0)}
+        for begin, way in product(sorted(begins), (1, -1)):
+            for across in count(begin, way):
+                line = [(across, along) if axis else (along, across) for along in range(int(low) - 1, int(high) + 1)]
+                if across in gaps or not _is_from_wall_to_wall(line, model):
+                    break
+                gaps[across] = Gap(tuple((x + model.view.west, y + model.view.south) for x, y in line[1:-1]))
+        return min(gaps.values(), key=lambda gap: self.is_exact(gap) is not True, default=None)
 
     def is_exact(self, gap: Gap) -> bool | None:
-        """Return whether a gap is at most as wide as its squares and BACK on each side; None where that is not known."""
+        """Return whether a gap is at most as wide as its squares, and BACK on each side; None while it is not known."""
         sides = [self._exact.get((gap.squares[side], side)) for side in (0, -1)]
         return False if False in sides else None if None in sides else True
 
@@ -125,7 +128,7 @@ def _feels_from(square: Square, model: WorldModel) -> bool:
 
 def _square(place: XY) -> Square:
     """Return the square (x, y) in which a point lies."""
-    return int(np.floor(place[0])), int(np.floor(place[1]))
+    return math.floor(place[0]), math.floor(place[1])
 
 
 def _is_from_wall_to_wall(line: list[Square], model: WorldModel) -> bool:
