@@ -15,7 +15,7 @@ from utak.kb.language.vocabulary import RESUMED_STEPS, SETTLING_STEPS
 from utak.kb.task.task import Task
 from utak.planner.agenda.choice import Activity, Agenda, StageEnd
 from utak.planner.agenda.own_goals import OwnGoals
-from utak.planner.carrying.open_facts import open_fact_against
+from utak.planner.carrying.open_facts import OpenQuestion, open_facts
 from utak.planner.carrying.remaining_plan import RemainingPlan
 from utak.planner.constraints import avoidances
 from utak.planner.deciding.clearing import ObstacleClearer
@@ -41,6 +41,8 @@ from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
 
 # As what steps of a plan activities without one of that name are done, where there is no task plan.
 _ERRANDS = {"go": Errand("pursue", ROBOT_ITSELF), "look": Errand("confirm", ALL_OBJECTS), "release": RECOVERY}
+# What verdicts say of open facts.
+_HOPES = {TaskVerdict.POSSIBLE_IF: "it may be possible if", TaskVerdict.LIMIT: "no plan is known to exist even if"}
 
 
 class Activities:
@@ -101,11 +103,22 @@ class Activities:
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = proved = nothing_to_do("all goals hold")
+        question = OpenQuestion((), bool)
         while isinstance(found := agenda.next(), Activity):
             if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
-                agenda.plan(step)
+                agenda.learn([f"planned({step})"])
                 continue
-            decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), found, turn), turn)
+            asked = replace(turn, agreeing=found.subject == ALL_OBJECTS)
+            if found.kind == "doubt":
+                question = self._doubted(found.subject, last, asked)
+                closed = ["rules_close_all_doors"] * rules_close_all_doors(turn.situation)
+                agenda.note(found, nothing_to_do(f"{len(question.facts) or 'no'} open facts are known"))
+                agenda.learn((*question.given, *closed), question.about)
+                continue
+            if found.kind == "suppose":
+                agenda.learn(question.answer(agenda.named))
+                continue
+            decision = self._transporter.led_out(self._allowed(self._do(found, asked, last), found, turn), turn)
             decision = _done_by_rules(decision, turn.situation)
             if decision.command is not None:
                 agenda.record()
@@ -117,6 +130,9 @@ class Activities:
                 last = decision
                 proved = decision if decision.verdict == TaskVerdict.IMPOSSIBLE else proved
         agenda.record()
+        if question.facts and found.verdict in _HOPES:
+            open_so = question.in_words(agenda.named or [*question.facts][:1])
+            last = replace(last, why=f"{last.why}; {_HOPES[found.verdict]} {open_so}")
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
 
     @property
@@ -202,8 +218,6 @@ class Activities:
         """Return what an activity comes to."""
         stage, situation = turn.stage, turn.situation
         goals = turn.goals_of(activity.subject)
-        if activity.subject == ALL_OBJECTS:
-            turn = replace(turn, agreeing=True)
         if activity.kind in self._settling:
             return self._settling[activity.kind](goals, turn)
         doing: Mapping[str, Callable[[], Decision]] = {
@@ -218,7 +232,6 @@ class Activities:
             "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
             "blame": lambda: _added(last, self._clearer.blame(turn.situation)),
-            "doubt": lambda: self._doubt(activity.subject, last, turn),
         }
         return doing[activity.kind]()
 
@@ -231,22 +244,17 @@ class Activities:
         """Return the next command towards the first of some goals for objects, or what it came to."""
         return self._transporter.towards(goals[0], turn)
 
-    def _doubt(self, subject: str, last: Decision, turn: StageTurn) -> Decision:
-        """Return the open fact that would overturn a verdict; `limit` where rules close whatever door it may show."""
+    def _doubted(self, subject: str, last: Decision, turn: StageTurn) -> OpenQuestion:
+        """Return the question whether open facts overturn a verdict about a subject of the agenda."""
         scope = ALL_WALLS if subject == CONSTRAINTS else feeling_scope(turn)
-        found = open_fact_against(last, turn.situation, scope, partial(self._plan_exists, turn.goals_of(subject), turn))
-        vain = found.verdict == TaskVerdict.POSSIBLE_IF and rules_close_all_doors(turn.situation)
-        return replace(last, verdict=TaskVerdict.LIMIT) if vain else found
+        exists = partial(self._plan_exists, turn.goals_of(subject), turn)
+        return OpenQuestion(open_facts(last, turn.situation, scope), exists)
 
     def _plan_exists(self, goals: Sequence[Fact], turn: StageTurn, opened: Bools) -> bool:
         """Return whether some goals may be attained if some squares, (rows, columns) bool, are free."""
-        situation = turn.situation.with_free(opened)
-        return bool(opened.any()) and all(
-            self._own.may_reach(goal, turn, situation)
-            if goal in turn.stage.own
-            else self._transporter.may_bring(goal, turn, situation)
-            for goal in goals
-        )
+        situation, own = turn.situation.with_free(opened), turn.stage.own
+        may = [(goal, self._own.may_reach if goal in own else self._transporter.may_bring) for goal in goals]
+        return bool(opened.any()) and all(attain(goal, turn, situation) for goal, attain in may)
 
     def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""

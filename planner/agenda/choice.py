@@ -42,6 +42,7 @@ class Agenda:
         self._facts, self._about = list(given), list(about)
         self._files = [PLANNER_ASP / "agenda.lp", *rules]
         self._stuck: list[str] = []
+        self.named: tuple[str, ...] = ()  # the open facts that are supposed, or on which the verdict depends
 
     @property
     def results(self) -> tuple[str, ...]:
@@ -53,6 +54,7 @@ class Agenda:
         with record_decisions():  # of all choices, only the last one is recorded
             answer = solve(self._files, self._facts) or ()
         self._stuck = [str(atom) for atom in answer if atom.name == "stuck"]
+        self.named = tuple({str(atom.arguments[0]): "" for atom in answer if atom.name in ("suppose", "depends")})
         for atom in answer:
             if atom.name == "do":
                 activity = atom.arguments[0]
@@ -72,9 +74,10 @@ class Agenda:
         self._facts.append(f"came_to({activity},{decision.result})")
         self._about.append(f"{activity}: {decision.why}")
 
-    def plan(self, step: str) -> None:
-        """Note the step with which the task plan begins, as planner/asp/task writes it."""
-        self._facts.append(f"planned({step})")
+    def learn(self, facts: Iterable[str], about: Iterable[str] = ()) -> None:
+        """Note more facts, without full stops. about : what they are about, in words, for the record."""
+        self._facts += facts
+        self._about += about
 
     def record(self) -> None:
         """Write the last choice into the record of decisions: it has the facts of all that were refused before."""
