@@ -77,8 +77,8 @@ class Activities:
         self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
         self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
-        self._pursued: Fact | None = None  # the goal that the newest command pursues by itself
-        self._held: frozenset[Fact] = frozenset()  # the goals that held then
+        # The goal that the newest command pursues by itself, with each goal that held then.
+        self._held: frozenset[tuple[Fact, Fact]] = frozenset()
         self._undid: set[tuple[Fact, Fact]] = set()  # goals that were pursued by themselves, with those that this undid
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
@@ -97,26 +97,14 @@ class Activities:
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
         self._own.note(turn)
-        if self._pursued is not None:
-            holds = self.holds(turn.situation)
-            self._undid |= {(self._pursued, goal) for goal in self._held if not holds(goal)}
+        holds = self.holds(turn.situation)
+        self._undid |= {(pursued, goal) for pursued, goal in self._held if not holds(goal)}
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = proved = nothing_to_do("all goals hold")
-        question = OpenQuestion((), bool)
         while isinstance(found := agenda.next(), Activity):
-            if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
-                agenda.learn([f"planned({step})"])
-                continue
             asked = replace(turn, agreeing=found.subject == ALL_OBJECTS)
-            if found.kind == "doubt":
-                question = self._doubted(found.subject, last, asked)
-                closed = ["rules_close_all_doors"] * rules_close_all_doors(turn.situation)
-                agenda.note(found, nothing_to_do(f"{len(question.facts) or 'no'} open facts are known"))
-                agenda.learn((*question.given, *closed), question.about)
-                continue
-            if found.kind == "suppose":
-                agenda.learn(question.answer(agenda.named))
+            if self._learns(found, agenda, last, asked):
                 continue
             decision = self._transporter.led_out(self._allowed(self._do(found, asked, last), found, turn), turn)
             decision = _done_by_rules(decision, turn.situation)
@@ -130,10 +118,24 @@ class Activities:
                 last = decision
                 proved = decision if decision.verdict == TaskVerdict.IMPOSSIBLE else proved
         agenda.record()
-        if question.facts and found.verdict in _HOPES:
-            open_so = question.in_words(agenda.named or [*question.facts][:1])
-            last = replace(last, why=f"{last.why}; {_HOPES[found.verdict]} {open_so}")
+        if agenda.question.facts and found.verdict in _HOPES:
+            last = replace(last, why=f"{last.why}; {_HOPES[found.verdict]} {agenda.question.in_words(agenda.named)}")
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
+
+    def _learns(self, activity: Activity, agenda: Agenda, last: Decision, turn: StageTurn) -> bool:
+        """Return whether an activity does nothing but ask for facts, after these were noted on the agenda."""
+        if activity.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
+            agenda.learn([f"planned({step})"])
+        elif activity.kind == "doubt":
+            scope = ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(turn)
+            exists = partial(self._plan_exists, turn.goals_of(activity.subject), turn)
+            agenda.ask(activity, OpenQuestion(open_facts(last, turn.situation, scope), exists))
+            agenda.learn(["rules_close_all_doors"] * rules_close_all_doors(turn.situation))
+        elif activity.kind == "suppose":
+            agenda.learn(agenda.question.answer(agenda.named))
+        else:
+            return False
+        return True
 
     @property
     def stated(self) -> TaskPlan:
@@ -143,9 +145,9 @@ class Activities:
 
     def _note_pursuit(self, activity: Activity, turn: StageTurn) -> None:
         """Note which goal an activity pursues by itself, and which hold meanwhile."""
-        self._pursued = turn.goals.get(activity.subject) if activity.kind == "pursue" else None
-        alone = self._pursued is not None
-        self._held = frozenset(filter(self.holds(turn.situation), turn.goals.values())) if alone else frozenset()
+        holds, goals = self.holds(turn.situation), turn.goals.items()
+        pursued = [goal for name, goal in goals if activity == Activity("pursue", name)]
+        self._held = frozenset((one, goal) for one in pursued for _, goal in goals if holds(goal))
 
     def _note_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> None:
         """Note as what step of a plan an activity is done."""
@@ -244,12 +246,6 @@ class Activities:
         """Return the next command towards the first of some goals for objects, or what it came to."""
         return self._transporter.towards(goals[0], turn)
 
-    def _doubted(self, subject: str, last: Decision, turn: StageTurn) -> OpenQuestion:
-        """Return the question whether open facts overturn a verdict about a subject of the agenda."""
-        scope = ALL_WALLS if subject == CONSTRAINTS else feeling_scope(turn)
-        exists = partial(self._plan_exists, turn.goals_of(subject), turn)
-        return OpenQuestion(open_facts(last, turn.situation, scope), exists)
-
     def _plan_exists(self, goals: Sequence[Fact], turn: StageTurn, opened: Bools) -> bool:
         """Return whether some goals may be attained if some squares, (rows, columns) bool, are free."""
         situation, own = turn.situation.with_free(opened), turn.stage.own
@@ -299,8 +295,7 @@ class Activities:
         if self.errands.blamed and self.errands.intention.plan is None:
             return self.errands.blamed
         for actor, door in situation.closed_doors_passed:
-            who = "the robot" if actor == ROBOT else actor
-            return f"{who} went through {door.name}, which users' rules close"
+            return f"{'the robot' if actor == ROBOT else actor} went through {door.name}, which users' rules close"
         return self.keeper.doubt_of_done(situation)
 
 
@@ -320,10 +315,8 @@ def _unknown(turn: StageTurn) -> Iterator[str]:
     """Yield which goals are about an object that is missing or of which the outline is not known, as facts."""
     for name, goal in turn.goals.items():
         node = turn.situation.object_of(str(goal.args[0]))
-        if node is None:
-            yield f"missing({name})"
-        elif node.polygon is None:
-            yield f"unclear({name})"
+        if node is None or node.polygon is None:
+            yield f"{'missing' if node is None else 'unclear'}({name})"
 
 
 def _rules_at(places: Sequence[str]) -> str:
@@ -333,11 +326,10 @@ def _rules_at(places: Sequence[str]) -> str:
 
 def _put_down(situation: Situation) -> Decision:
     """Return the release of what a robot holds that is lost, or that does not know what it holds."""
-    model = situation.model
-    lost = f"{model.held} is released, because the robot does not know where it is: nothing looks as expected"
+    held = situation.model.held
+    lost = f"{held} is released, because the robot does not know where it is: nothing looks as expected"
     unsure = "what may be in hand is released, for it was grasped before the map was begun"
-    why = unsure if model.held is None else lost
-    return Decision(Release(), why)
+    return Decision(Release(), unsure if held is None else lost)
 
 
 def _done_by_rules(decision: Decision, situation: Situation) -> Decision:

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 from utak.kb.reasoning.solver import solve
 from utak.kb.reasoning.user_rules import rules_to_blame
 from utak.kb.tracing.decisions import record_decisions
-from utak.planner.decision import Decision, TaskVerdict
-from utak.planner.navigation.subgoals import PLANNER_ASP
+from utak.planner.carrying.open_facts import OpenQuestion
+from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
+from utak.planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE
 
 
 class Activity(NamedTuple):
@@ -42,6 +43,7 @@ class Agenda:
         self._facts, self._about = list(given), list(about)
         self._files = [PLANNER_ASP / "agenda.lp", *rules]
         self._stuck: list[str] = []
+        self.question = OpenQuestion((), bool)  # whether open facts overturn what the robot is stuck with
         self.named: tuple[str, ...] = ()  # the open facts that are supposed, or on which the verdict depends
 
     @property
@@ -59,25 +61,29 @@ class Agenda:
             if atom.name == "do":
                 activity = atom.arguments[0]
                 return Activity(activity.name, " ".join(map(str, activity.arguments)))
-            if atom.name == "verdict":
-                return StageEnd(TaskVerdict(str(atom.arguments[0])))
-            if atom.name == "stage_attained":
-                return StageEnd(TaskVerdict.DONE)
+            if atom.name in ("verdict", "stage_attained"):
+                return StageEnd(TaskVerdict(str(atom.arguments[0])) if atom.arguments else TaskVerdict.DONE)
         agenda, *rules = self._files
         blamed = rules_to_blame(agenda, rules, self._facts, _chooses_nothing)
-        return StageEnd(
-            TaskVerdict.LIMIT, f", by the rule at {' and '.join(blamed)}" if blamed else ", as far as is known"
-        )
+        where = f", by the rule at {' and '.join(blamed)}" if blamed else ", as far as is known"
+        return StageEnd(TaskVerdict.LIMIT, where)
 
     def note(self, activity: Activity, decision: Decision) -> None:
         """Note that an activity came to no command, and why."""
         self._facts.append(f"came_to({activity},{decision.result})")
         self._about.append(f"{activity}: {decision.why}")
 
-    def learn(self, facts: Iterable[str], about: Iterable[str] = ()) -> None:
-        """Note more facts, without full stops. about : what they are about, in words, for the record."""
+    def learn(self, facts: Iterable[str]) -> None:
+        """Note more facts, without full stops."""
         self._facts += facts
-        self._about += about
+
+    def ask(self, activity: Activity, question: OpenQuestion) -> None:
+        """Note the open facts that an activity found."""
+        self.question = question
+        self.note(activity, nothing_to_do(f"{len(question.facts) or 'no'} open facts are known"))
+        facts = question.facts.items()
+        self._about += [f"{name}: {fact.words}" for name, fact in facts]
+        self.learn(f"open_fact({name},{fact.kind},{round(TENTHS_PER_SQUARE * fact.far)})" for name, fact in facts)
 
     def record(self) -> None:
         """Write the last choice into the record of decisions: it has the facts of all that were refused before."""

@@ -8,7 +8,6 @@ from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.plan_carrying import CarryingPlan
 from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.world.model import Node, WorldModel
-from utak.planner.carrying.open_facts import possible_width
 from utak.planner.goals.placement import is_off_quarter_turn
 
 ONE_NUMBER = 0.05  # squares: a missing width that is known this well is told as one number; a convention
@@ -31,8 +30,7 @@ class Refutation:
 
     def reason(self) -> str:
         """Return why the object cannot be carried there, in words: a clause without full stop."""
-        closest = self.closest
-        passage = closest.passage
+        closest, passage = self.closest, self.closest.passage
         if passage is None:
             return f"{self.name} cannot be carried there"
         where = f"{passage.width:.2f} squares wide at {self.model.point_in_words(passage.place)}"
@@ -75,14 +73,22 @@ class Infeasibility:
         return possible_width(passage.width, closest.missing_between[0], passage.sides, where)
 
 
+def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
+    """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case."""
+    (x, y), (other_x, other_y) = sides
+    most = width + 2 * (abs(x - other_x) + abs(y - other_y)) / max(math.dist(*sides), 1e-9)
+    if width + missing >= most:
+        return ""
+    return f"the passage at {where}, which is between {width:.2f} and {most:.2f} squares wide, is wide enough"
+
+
 def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
     """Return why no way was found for an object."""
     if not plans:
         return Infeasibility(False, f"it is not known where {node.name} could be carried")
     if any(plan.status != "impossible" for _, plan in plans):
         return Infeasibility(False, f"no way was found to carry {node.name} there, and no proof that there is none")
-    doubt = _doubt(node, plans, model)
-    if doubt:
+    if doubt := _doubt(node, plans, model):
         return Infeasibility(False, f"it is not known well where {node.name} lies: {doubt}")
     return Infeasibility(True, refutation=Refutation(node.name, tuple(plans), model))
 

@@ -6,7 +6,6 @@ thing; an opening that fills no whole square looks like wall; a thing that other
 these is open, planner/asp/agenda.lp chooses the fewest with which a plan may exist, and derives the verdict.
 """
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -30,6 +29,7 @@ from utak.planner.sights.walls import (
 )
 from utak.planner.situation import Situation
 
+MAX_QUESTIONS = 256  # to geometry about open facts, after which no answer is widened; a bound on time
 NOTHING_LEFT = "nothing is left to look at"  # a fact that proofs name: all floor that can be reached was seen
 
 
@@ -56,45 +56,37 @@ class OpenQuestion:
         """Make a question that was not asked yet."""
         self.facts = {f"f{number}": fact for number, fact in enumerate(facts, 1)}
         self._plan_exists = plan_exists
-        self._refuted = 0  # how many answers found none
+        self._asked = 0  # how many questions geometry was asked
 
-    @property
-    def given(self) -> list[str]:
-        """The open facts as the agenda is given them, without full stops."""
-        return [f"open_fact({name},{fact.kind},{round(10 * fact.far)})" for name, fact in self.facts.items()]
-
-    @property
-    def about(self) -> list[str]:
-        """The open facts in words, each after its name."""
-        return [f"{name}: {fact.words}" for name, fact in self.facts.items()]
-
-    def in_words(self, names: Iterable[str]) -> str:
-        """Return some open facts in words, a clause without full stop."""
-        return " and ".join(self.facts[name].words for name in names)
+    def in_words(self, names: Sequence[str]) -> str:
+        """Return some open facts in words, a clause without full stop; the first one where none is named."""
+        return " and ".join(self.facts[name].words for name in names or [*self.facts][:1])
 
     def answer(self, supposed: Sequence[str]) -> list[str]:
         """Return what geometry finds if some facts are so, each with known squares, as facts for the agenda.
 
-        These are that a plan may exist; or that there is none, even if all others are so but those that it leaves out:
-        each of these would allow one then, or nothing tells which squares it frees.
+        These are that a plan may exist; or that there is none, even if all others are so but those that it leaves out.
+        One of these is needed; as long as no bound on questions is reached, each would allow a plan then, or nothing
+        tells which squares it frees.
         """
         if self._allow(supposed):
             return [f"plan_with({name})" for name in supposed]
-        self._refuted += 1
         others = [name for name, fact in self.facts.items() if fact.opens is not None and name not in supposed]
         left_out = self.facts.keys() - self._widened(supposed, others)
-        return [f"refutes(a{self._refuted})", *(f"left_out(a{self._refuted},{name})" for name in sorted(left_out))]
+        return [f"refutes(a{self._asked})", *(f"left_out(a{self._asked},{name})" for name in sorted(left_out))]
 
     def _widened(self, refuted: Sequence[str], others: Sequence[str]) -> Sequence[str]:
         """Return facts with which there is no plan: some with as many others as may be, found by halves."""
+        if not others or self._asked >= MAX_QUESTIONS:
+            return refuted
         if not self._allow([*refuted, *others]):
             return [*refuted, *others]
-        if (half := len(others) // 2) == 0:
-            return refuted
-        return self._widened(self._widened(refuted, others[:half]), others[half:])
+        half = len(others) // 2
+        return self._widened(self._widened(refuted, others[:half]), others[half:]) if half else refuted
 
     def _allow(self, names: Sequence[str]) -> bool:
         """Return whether a plan may exist if some facts are so, each with known squares."""
+        self._asked += 1
         opened = (mask for name in names if (mask := self.facts[name].opens) is not None)
         return self._plan_exists(np.any(list(opened), axis=0))
 
@@ -131,15 +123,6 @@ def open_facts(decision: Decision, situation: Situation, scope: FeelingScope = A
     for node in things_in_question(situation.cost_maps, scope):
         seen = "was not seen to move as one thing" if node.moved else "was never moved"
         yield OpenFact("parts", f"{node.name}, which {seen}, is more than one thing")
-
-
-def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
-    """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case."""
-    across = np.abs(np.subtract(*sides)) / max(math.dist(*sides), 1e-9)
-    most = width + 2 * float(across.sum())
-    if width + missing >= most:
-        return ""
-    return f"the passage at {where}, which is between {width:.2f} and {most:.2f} squares wide, is wide enough"
 
 
 def _by_distance(mask: Bools, near: XY) -> Iterator[tuple[Square, XY, float]]:

@@ -13,12 +13,12 @@ from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 from utak.kb.world.model import WorldModel
 from utak.planner.agenda.choice import Activity, Agenda
+from utak.planner.carrying.infeasibility import possible_width
 from utak.planner.carrying.open_facts import (
     OpenFact,
     OpenQuestion,
     PlanExists,
     open_facts,
-    possible_width,
     proof_if_not_found,
 )
 from utak.planner.decision import Decision, impossible
@@ -51,7 +51,8 @@ def nearest(situation: Situation, scope: FeelingScope = ALL_WALLS) -> str:
 
 def ruled(question: OpenQuestion) -> tuple[str, tuple[str, ...]]:
     """Return the verdict of the agenda on what the robot is stuck with, and the names of the open facts it rests on."""
-    agenda = Agenda((*STUCK, "came_to(doubt(robot),idle)", *question.given), (), ())
+    agenda = Agenda(STUCK, (), ())
+    agenda.ask(Activity("doubt", "robot"), question)
     while isinstance(found := agenda.next(), Activity):
         assert found == Activity("suppose")
         agenda.learn(question.answer(agenda.named))
