@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
+from utak.kb.explanation.proof import explain_decision
+from utak.kb.explanation.values import ProofNode
+from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.model import WorldModel
 from utak.planner.agenda.choice import Activity, Agenda
 from utak.planner.carrying.infeasibility import possible_width
@@ -56,6 +59,7 @@ def ruled(question: OpenQuestion) -> tuple[str, tuple[str, ...]]:
     while isinstance(found := agenda.next(), Activity):
         assert found == Activity("suppose")
         agenda.learn(question.answer(agenda.named))
+    agenda.record()
     return str(found.verdict), agenda.named
 
 
@@ -202,6 +206,28 @@ def test_no_fewer_open_facts_allow_a_plan_and_none_that_are_likelier_or_nearer(
         assert (verdict, named) == ("possible_if", (f"f{len(facts) + 1}",))
     else:
         assert (verdict, named) == ("limit", ())
+
+
+def claims_below(node: ProofNode) -> set[str]:
+    """Return the claims of a proof."""
+    return {node.claim}.union(*map(claims_below, node.children))
+
+
+def test_open_facts_and_what_geometry_answered_are_premises_of_the_verdict() -> None:
+    masks = [np.array(mask, np.bool_) for mask in ([1, 0], [0, 1])]
+    walls = [OpenFact("wall", "", mask, far) for far, mask in enumerate(masks, 1)]
+    with record_decisions() as record:
+        assert ruled(OpenQuestion(walls, lambda opened: bool(opened[1]))) == ("possible_if", ("f2",))
+    proof = explain_decision("agenda", record[-1].facts, record[-1].answer, "verdict(possible_if)").root
+    premises = {
+        "open_fact(f2,wall,20)",
+        "left_out(a2,f2)",
+        "refutes(a2)",
+        "plan_with(f2)",
+        "stuck(robot,impossible)",
+        "helpless",
+    }
+    assert premises <= claims_below(proof)
 
 
 def test_a_wall_that_leads_nowhere_is_not_named() -> None:
