@@ -29,7 +29,9 @@ from utak.planner.sights.walls import (
 )
 from utak.planner.situation import Situation
 
-MAX_QUESTIONS = 256  # to geometry about open facts, after which no answer is widened; a bound on time
+# Questions to geometry: by so many the first refutation is widened, and each later one by twice as many as were asked
+# before (mostly the first open fact that helps does so alone); and after so many none is. Bounds on time.
+FIRST_QUESTIONS, ALL_QUESTIONS = 16, 1024
 NOTHING_LEFT = "nothing is left to look at"  # a fact that proofs name: all floor that can be reached was seen
 
 
@@ -56,7 +58,7 @@ class OpenQuestion:
         """Make a question that was not asked yet."""
         self.facts = {f"f{number}": fact for number, fact in enumerate(facts, 1)}
         self._plan_exists = plan_exists
-        self._asked = 0  # how many questions geometry was asked
+        self._asked = self._most = 0  # questions that geometry was asked, and that it is asked before widening ends
 
     def in_words(self, names: Sequence[str]) -> str:
         """Return some open facts in words, a clause without full stop; the first one where none is named."""
@@ -71,13 +73,14 @@ class OpenQuestion:
         """
         if self._allow(supposed):
             return [f"plan_with({name})" for name in supposed]
+        self._most = min(ALL_QUESTIONS, max(FIRST_QUESTIONS, 3 * self._asked))
         others = [name for name, fact in self.facts.items() if fact.opens is not None and name not in supposed]
         left_out = self.facts.keys() - self._widened(supposed, others)
         return [f"refutes(a{self._asked})", *(f"left_out(a{self._asked},{name})" for name in sorted(left_out))]
 
     def _widened(self, refuted: Sequence[str], others: Sequence[str]) -> Sequence[str]:
         """Return facts with which there is no plan: some with as many others as may be, found by halves."""
-        if not others or self._asked >= MAX_QUESTIONS:
+        if not others or self._asked >= self._most:
             return refuted
         if not self._allow([*refuted, *others]):
             return [*refuted, *others]
