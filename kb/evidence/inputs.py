@@ -21,7 +21,7 @@ NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the
     "fixed": "movable({0},0)",
 }
 FACT_OF_PLACE = {"o": "kind(", "r": "unseen(", "d": "door("}  # by the letter of a place: the fact that tells of it
-AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to; the record says what and why
+AGENDA_INPUTS = ("stage_goal", "came_to", "open_fact")  # the record says what goals and facts, and why it came so
 # What encodings of the planner are given that was not measured: bounds, what is offered, asked, or came of something.
 DECIDED_INPUTS = frozenset({
     "horizon", "place", "aside", "asked", "rank", "wish", "fulfils", "about", "order", "meant_before", "may_mean",

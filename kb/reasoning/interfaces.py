@@ -45,14 +45,13 @@ MAX_AMOUNT = 1_000_000  # the greatest count, price or length that users' rules 
 AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)  # a count, a length or a price
 THOUSANDTHS_ARGUMENT = integer_argument("thousandths", 0, 1000)
 NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a thing
-
-
-REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT = (
-    NAME_ARGUMENT._replace(name=name) for name in ("region", "candidate", "parameter", "place", "goal")
+REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT, OPEN_FACT_ARGUMENT = (
+    NAME_ARGUMENT._replace(name=name) for name in ("region", "candidate", "parameter", "place", "goal", "open fact")
 )
-PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT, SUBJECT_ARGUMENT = (  # a subject: a goal, all, robot, task, plan or look
-    NAME_ARGUMENT._replace(name=name) for name in ("room", "door", "subject")
+PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT, SUBJECT_ARGUMENT, ANSWER_ARGUMENT = (  # a subject: a goal, all, robot, ...
+    NAME_ARGUMENT._replace(name=name) for name in ("room", "door", "subject", "answer")
 )
+OPEN_KIND_ARGUMENT = word_argument("kind of open fact", ("stated", "gone", "wall", "unseen", "passage", "parts"))
 NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
     NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time")
 )
@@ -112,8 +111,8 @@ EXCLUSIVE_QUESTIONS: Forms = {  # whose answers exclude each other
 QUESTION_ARGUMENT = _compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
-# The activities of the agenda.
-WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look")  # about nothing in particular
+# The activities of the agenda, first those about nothing in particular.
+WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look", "suppose")
 ACTIVITIES: Forms = {
     **dict.fromkeys(WHOLE_ACTIVITIES, ()),
     **dict.fromkeys(("blame", "clash", "doubt", *SETTLING_STEPS), (SUBJECT_ARGUMENT,)),
@@ -132,6 +131,7 @@ COMPOUND_FORMS: Mapping[str, Forms] = {
     "question": EXCLUSIVE_QUESTIONS,
 }
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
+OUTCOME = {("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT), ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT)}
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
@@ -289,8 +289,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("occurs", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("brought", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         **dict.fromkeys([("thing", 1), ("holds", 1)], (NODE_ARGUMENT,)),
-        ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
-        ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
+        **OUTCOME,
         ("settles", 2): (STEP_ARGUMENT, SUBJECT_ARGUMENT),
         **{(name, 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT) for name in ("default_price", "price")},
         ("left", 1): (STEP_ARGUMENT,),
@@ -305,14 +304,17 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
         **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
         **{(name, 0): () for name in ("hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted")},
-        **{(name, 0): () for name in ("stage_attained", "begun")},
+        **{(name, 0): () for name in ("stage_attained", "rules_close_all_doors", "begun")},
         ("begun", 1): (BEGUN_ARGUMENT,),
         ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
         ("planned", 1): (STEP_ARGUMENT,),
-        ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
-        ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
+        **OUTCOME,
         ("do", 1): (ACTIVITY_ARGUMENT,),
         ("kept", 1): (_compound_argument("choice", "choices", KEPT_CHOICES),),
+        ("open_fact", 3): (OPEN_FACT_ARGUMENT, OPEN_KIND_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(name, 1): (OPEN_FACT_ARGUMENT,) for name in ("plan_with", "suppose", "depends")},
+        ("refutes", 1): (ANSWER_ARGUMENT,),
+        ("left_out", 2): (ANSWER_ARGUMENT, OPEN_FACT_ARGUMENT),
         ("verdict", 1): (VERDICT_ARGUMENT,),
         ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
         ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),

@@ -15,7 +15,7 @@ from utak.kb.language.vocabulary import RESUMED_STEPS, SETTLING_STEPS
 from utak.kb.task.task import Task
 from utak.planner.agenda.choice import Activity, Agenda, StageEnd
 from utak.planner.agenda.own_goals import OwnGoals
-from utak.planner.carrying.open_facts import open_fact_against
+from utak.planner.carrying.open_facts import OpenQuestion, open_facts
 from utak.planner.carrying.remaining_plan import RemainingPlan
 from utak.planner.constraints import avoidances
 from utak.planner.deciding.clearing import ObstacleClearer
@@ -41,6 +41,8 @@ from utak.planner.tasking.task_plan import RECOVERY, Errand, TaskPlan
 
 # As what steps of a plan activities without one of that name are done, where there is no task plan.
 _ERRANDS = {"go": Errand("pursue", ROBOT_ITSELF), "look": Errand("confirm", ALL_OBJECTS), "release": RECOVERY}
+# What verdicts say of open facts.
+_HOPES = {TaskVerdict.POSSIBLE_IF: "it may be possible if", TaskVerdict.LIMIT: "no plan is known to exist even if"}
 
 
 class Activities:
@@ -75,8 +77,8 @@ class Activities:
         self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
         self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
-        self._pursued: Fact | None = None  # the goal that the newest command pursues by itself
-        self._held: frozenset[Fact] = frozenset()  # the goals that held then
+        # The goal that the newest command pursues by itself, with each goal that held then.
+        self._held: frozenset[tuple[Fact, Fact]] = frozenset()
         self._undid: set[tuple[Fact, Fact]] = set()  # goals that were pursued by themselves, with those that this undid
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
@@ -95,18 +97,17 @@ class Activities:
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
         self._own.note(turn)
-        if self._pursued is not None:
-            holds = self.holds(turn.situation)
-            self._undid |= {(self._pursued, goal) for goal in self._held if not holds(goal)}
+        holds = self.holds(turn.situation)
+        self._undid |= {(pursued, goal) for pursued, goal in self._held if not holds(goal)}
         about = tuple(f"{name}: {goal}" for name, goal in turn.goals.items())
         agenda = Agenda(Question(turn.situation.rules, tuple(self._facts(turn)), about))
         last = proved = nothing_to_do("all goals hold")
         while isinstance(found := agenda.next(), Activity):
-            if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
-                agenda.plan(step)
+            asked = replace(turn, agreeing=found.subject == ALL_OBJECTS)
+            if self._learns(found, agenda, last, asked):
                 continue
-            turn = turn.within(replace(turn.situation, question=agenda.question.keeping(f"do({found})")))
-            decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), found, turn), turn)
+            asked = asked.within(replace(turn.situation, question=agenda.question.keeping(f"do({found})")))
+            decision = self._transporter.led_out(self._allowed(self._do(found, asked, last), found, asked), asked)
             decision = _done_by_rules(decision, turn.situation)
             if decision.command is not None:
                 self._note_step(found, decision, turn)
@@ -117,7 +118,24 @@ class Activities:
                 last = decision
                 proved = decision if decision.verdict == TaskVerdict.IMPOSSIBLE else proved
         agenda.question.recorded()
+        if agenda.open.facts and found.verdict in _HOPES:
+            last = replace(last, why=f"{last.why}; {_HOPES[found.verdict]} {agenda.open.in_words(agenda.named)}")
         return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
+
+    def _learns(self, activity: Activity, agenda: Agenda, last: Decision, turn: StageTurn) -> bool:
+        """Return whether an activity does nothing but ask for facts, after these were noted on the agenda."""
+        if activity.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
+            agenda.learn([f"planned({step})"])
+        elif activity.kind == "doubt":
+            scope = ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(turn)
+            exists = partial(self._plan_exists, turn.goals_of(activity.subject), turn)
+            agenda.ask(activity, OpenQuestion(open_facts(last, turn.situation, scope), exists))
+            agenda.learn(["rules_close_all_doors"] * rules_close_all_doors(turn.situation))
+        elif activity.kind == "suppose":
+            agenda.learn(agenda.open.answer(agenda.named))
+        else:
+            return False
+        return True
 
     @property
     def stated(self) -> TaskPlan:
@@ -127,9 +145,9 @@ class Activities:
 
     def _note_pursuit(self, activity: Activity, turn: StageTurn) -> None:
         """Note which goal an activity pursues by itself, and which hold meanwhile."""
-        self._pursued = turn.goals.get(activity.subject) if activity.kind == "pursue" else None
-        alone = self._pursued is not None
-        self._held = frozenset(filter(self.holds(turn.situation), turn.goals.values())) if alone else frozenset()
+        holds, goals = self.holds(turn.situation), turn.goals.items()
+        pursued = [goal for name, goal in goals if activity == Activity("pursue", name)]
+        self._held = frozenset((one, goal) for one in pursued for _, goal in goals if holds(goal))
 
     def _note_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> None:
         """Note as what step of a plan an activity is done."""
@@ -202,8 +220,6 @@ class Activities:
         """Return what an activity comes to."""
         stage, situation = turn.stage, turn.situation
         goals = turn.goals_of(activity.subject)
-        if activity.subject == ALL_OBJECTS:
-            turn = replace(turn, agreeing=True)
         if activity.kind in self._settling:
             return self._settling[activity.kind](goals, turn)
         doing: Mapping[str, Callable[[], Decision]] = {
@@ -218,7 +234,6 @@ class Activities:
             "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
             "blame": lambda: _added(last, self._clearer.blame(turn.situation)),
-            "doubt": lambda: self._doubt(activity.subject, last, turn),
         }
         return doing[activity.kind]()
 
@@ -231,22 +246,11 @@ class Activities:
         """Return the next command towards the first of some goals for objects, or what it came to."""
         return self._transporter.towards(goals[0], turn)
 
-    def _doubt(self, subject: str, last: Decision, turn: StageTurn) -> Decision:
-        """Return the open fact that would overturn a verdict; `limit` where rules close whatever door it may show."""
-        scope = ALL_WALLS if subject == CONSTRAINTS else feeling_scope(turn)
-        found = open_fact_against(last, turn.situation, scope, partial(self._plan_exists, turn.goals_of(subject), turn))
-        vain = found.verdict == TaskVerdict.POSSIBLE_IF and rules_close_all_doors(turn.situation)
-        return replace(last, verdict=TaskVerdict.LIMIT) if vain else found
-
     def _plan_exists(self, goals: Sequence[Fact], turn: StageTurn, opened: Bools) -> bool:
         """Return whether some goals may be attained if some squares, (rows, columns) bool, are free."""
-        situation = turn.situation.with_free(opened)
-        return bool(opened.any()) and all(
-            self._own.may_reach(goal, turn, situation)
-            if goal in turn.stage.own
-            else self._transporter.may_bring(goal, turn, situation)
-            for goal in goals
-        )
+        situation, own = turn.situation.with_free(opened), turn.stage.own
+        may = [(goal, self._own.may_reach if goal in own else self._transporter.may_bring) for goal in goals]
+        return bool(opened.any()) and all(attain(goal, turn, situation) for goal, attain in may)
 
     def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
@@ -291,8 +295,7 @@ class Activities:
         if self.errands.blamed and self.errands.intention.plan is None:
             return self.errands.blamed
         for actor, door in situation.closed_doors_passed:
-            who = "the robot" if actor == ROBOT else actor
-            return f"{who} went through {door.name}, which users' rules close"
+            return f"{'the robot' if actor == ROBOT else actor} went through {door.name}, which users' rules close"
         return self.keeper.doubt_of_done(situation)
 
 
@@ -312,10 +315,8 @@ def _unknown(turn: StageTurn) -> Iterator[str]:
     """Yield which goals are about an object that is missing or of which the outline is not known, as facts."""
     for name, goal in turn.goals.items():
         node = turn.situation.object_of(str(goal.args[0]))
-        if node is None:
-            yield f"missing({name})"
-        elif node.polygon is None:
-            yield f"unclear({name})"
+        if node is None or node.polygon is None:
+            yield f"{'missing' if node is None else 'unclear'}({name})"
 
 
 def _rules_at(places: Sequence[str]) -> str:
@@ -325,11 +326,10 @@ def _rules_at(places: Sequence[str]) -> str:
 
 def _put_down(situation: Situation) -> Decision:
     """Return the release of what a robot holds that is lost, or that does not know what it holds."""
-    model = situation.model
-    lost = f"{model.held} is released, because the robot does not know where it is: nothing looks as expected"
+    held = situation.model.held
+    lost = f"{held} is released, because the robot does not know where it is: nothing looks as expected"
     unsure = "what may be in hand is released, for it was grasped before the map was begun"
-    why = unsure if model.held is None else lost
-    return Decision(Release(), why)
+    return Decision(Release(), unsure if held is None else lost)
 
 
 def _done_by_rules(decision: Decision, situation: Situation) -> Decision:

@@ -1,8 +1,11 @@
 """The next activity, chosen by planner/asp/deciding from what is left to do and what came of earlier ones."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
-from utak.planner.decision import Decision, TaskVerdict
+from utak.planner.carrying.open_facts import OpenQuestion
+from utak.planner.decision import Decision, TaskVerdict, nothing_to_do
+from utak.planner.navigation.subgoals import TENTHS_PER_SQUARE
 from utak.planner.question import Atoms, Question
 
 
@@ -36,6 +39,8 @@ class Agenda:
         """Make an agenda on which nothing was done."""
         self.question = given
         self._stuck: list[str] = []
+        self.open = OpenQuestion((), bool)  # whether open facts overturn what the robot is stuck with
+        self.named: tuple[str, ...] = ()  # the open facts that are supposed, or on which the verdict depends
 
     @property
     def results(self) -> tuple[str, ...]:
@@ -46,14 +51,13 @@ class Agenda:
         """Return the activity that is chosen now, or the end when nothing is left."""
         answer = self.question.answer() or ()
         self._stuck = [str(atom) for atom in answer if atom.name == "stuck"]
+        self.named = tuple({str(atom.arguments[0]): "" for atom in answer if atom.name in ("suppose", "depends")})
         for atom in answer:
             if atom.name == "do":
                 activity = atom.arguments[0]
                 return Activity(activity.name, " ".join(map(str, activity.arguments)))
-            if atom.name == "verdict":
-                return StageEnd(TaskVerdict(str(atom.arguments[0])))
-            if atom.name == "stage_attained":
-                return StageEnd(TaskVerdict.DONE)
+            if atom.name in ("verdict", "stage_attained"):
+                return StageEnd(TaskVerdict(str(atom.arguments[0])) if atom.arguments else TaskVerdict.DONE)
         blamed = self.question.blamed(_chooses_nothing)
         return StageEnd(
             TaskVerdict.LIMIT, f", by the rule at {' and '.join(blamed)}" if blamed else ", as far as is known"
@@ -65,6 +69,15 @@ class Agenda:
             [f"came_to({activity},{decision.result})"], [f"{activity}: {decision.why}"]
         )
 
-    def plan(self, step: str) -> None:
-        """Note the step with which the task plan begins, as planner/asp/task writes it."""
-        self.question = self.question.adding([f"planned({step})"])
+    def learn(self, facts: Iterable[str]) -> None:
+        """Note more facts, without full stops."""
+        self.question = self.question.adding(facts)
+
+    def ask(self, activity: Activity, asked: OpenQuestion) -> None:
+        """Note the open facts that an activity found."""
+        self.open = asked
+        self.note(activity, nothing_to_do(f"{len(asked.facts) or 'no'} open facts are known"))
+        facts = [
+            f"open_fact({name},{one.kind},{round(TENTHS_PER_SQUARE * one.far)})" for name, one in asked.facts.items()
+        ]
+        self.question = self.question.adding(facts, (f"{name}: {one.words}" for name, one in asked.facts.items()))

@@ -9,7 +9,6 @@ from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.plan_carrying import CarryingPlan
 from utak.kb.objects.held_object import is_grid_aligned
 from utak.kb.world.model import Node, WorldModel
-from utak.planner.carrying.open_facts import possible_width
 from utak.planner.goals.placement import is_off_quarter_turn
 
 ONE_NUMBER = 0.05  # squares: a missing width that is known this well is told as one number; a convention
@@ -32,25 +31,13 @@ class Refutation:
 
     def reason(self) -> str:
         """Return why the object cannot be carried there, in words: a clause without full stop."""
-        closest = self.closest
-        passage = closest.passage
+        closest, passage = self.closest, self.closest.passage
         if passage is None:
             return f"{self.name} cannot be carried there"
         where = f"{passage.width:.2f} squares wide at {self.model.point_in_words(passage.place)}"
         if not closest.opens:
             return f"{self.name} cannot be carried there: the passage, {where}, {how_narrow(closest)}"
         return f"the passage for {self.name}, {where}, {how_narrow(closest)}"
-
-    def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
-        # Also "" when no passage is too narrow, or a wider one would not help.
-        closest = self.closest
-        passage = closest.passage
-        if passage is None or _is_blocked_elsewhere(closest):
-            return ""
-        return possible_width(
-            passage.width, closest.missing_between[0], passage.sides, self.model.point_in_words(passage.place)
-        )
 
 
 @dataclass(frozen=True)
@@ -83,7 +70,21 @@ class Infeasibility:
 
     def unless(self) -> str:
         """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""
-        return "" if self.refutation is None else self.refutation.unless()
+        # Also "" when no passage is too narrow, or a wider one would not help.
+        closest = None if self.refutation is None else self.refutation.closest
+        if self.refutation is None or closest is None or closest.passage is None or _is_blocked_elsewhere(closest):
+            return ""
+        where, passage = self.refutation.model.point_in_words(closest.passage.place), closest.passage
+        return possible_width(passage.width, closest.missing_between[0], passage.sides, where)
+
+
+def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
+    """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case."""
+    (x, y), (other_x, other_y) = sides
+    most = width + 2 * (abs(x - other_x) + abs(y - other_y)) / max(math.dist(*sides), 1e-9)
+    if width + missing >= most:
+        return ""
+    return f"the passage at {where}, which is between {width:.2f} and {most:.2f} squares wide, is wide enough"
 
 
 def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
@@ -92,30 +93,27 @@ def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldM
         return Infeasibility(False, f"it is not known where {node.name} could be carried")
     if any(plan.status != "impossible" for _, plan in plans):
         return Infeasibility(False, f"no way was found to carry {node.name} there, and no proof that there is none")
-    doubt = _doubt(node, plans, model)
-    if doubt:
+    if doubt := _doubt(node, plans, model):
         return Infeasibility(False, f"it is not known well where {node.name} lies: {doubt}")
     return Infeasibility(True, refutation=Refutation(node.name, tuple(plans), model))
 
 
 def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> str:
     """Return why an object may lie elsewhere than believed, in words; "" for no reason."""
-    _, last = plans[-1]
-    if last.reason == "start":  # nothing lies in a wall
-        return "it would overlap a wall"
-    if node.dubious:
-        return "what is seen does not agree with it"
-    if node.stuck and not model.view.sure:
-        return "it did not move where there seemed to be room"
-    if is_off_quarter_turn(node):  # then the walls beside it are not known well either
-        return "it was turned askew"
-    # After a restart it is forgotten which objects were moved. One that lies askew may have been turned, against walls.
-    if model.anew and node.polygon is not None and not is_grid_aligned(node.polygon):
-        return "it lies askew, and may have been turned before all was forgotten"
-    # The robot has brought it there. When no wider passage surely lets it go on, it is more likely elsewhere.
-    off_grid, closest = node.moved and not is_grid_aligned(node.polygon), closest_refuted(plans)
-    is_stopped = off_grid and closest.passage is not None and not closest.opens
-    return "it was stopped on its way there" if is_stopped else ""
+    askew = node.polygon is not None and not is_grid_aligned(node.polygon)
+    closest = closest_refuted(plans)
+    doubts = (
+        (plans[-1][1].reason == "start", "it would overlap a wall"),  # nothing lies in a wall
+        (node.dubious, "what is seen does not agree with it"),
+        (node.stuck and not model.view.sure, "it did not move where there seemed to be room"),
+        (is_off_quarter_turn(node), "it was turned askew"),  # then the walls beside it are not known well either
+        # After a restart it is forgotten which objects were moved. One that lies askew may have been turned, against
+        # walls.
+        (model.anew and askew, "it lies askew, and may have been turned before all was forgotten"),
+        # The robot has brought it there. When no wider passage surely lets it go on, it is more likely elsewhere.
+        (node.moved and askew and closest.passage and not closest.opens, "it was stopped on its way there"),
+    )
+    return next((why for doubtful, why in doubts if doubtful), "")
 
 
 def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:

@@ -1,30 +1,43 @@
 """An open fact turns the verdict `impossible` into `possible_if`, and is named."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
+from utak.kb.explanation.proof import explain_decision
+from utak.kb.explanation.values import ProofNode
+from utak.kb.tracing.decisions import record_decisions
 from utak.kb.world.model import WorldModel
+from utak.planner.agenda.choice import Activity, Agenda
+from utak.planner.carrying.infeasibility import possible_width
 from utak.planner.carrying.open_facts import (
     OpenFact,
-    least_that_allow,
-    open_fact_against,
+    OpenQuestion,
+    PlanExists,
     open_facts,
-    possible_width,
     proof_if_not_found,
 )
-from utak.planner.decision import impossible
+from utak.planner.decision import Decision, impossible
 from utak.planner.sights.walls import ALL_WALLS, FeelingScope, unfelt_walls
 from utak.planner.situation import Situation
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
 WITH_A_THING = ["bbbbbbbbb", "b.......b", "b..U.gg.b", "b....gg.b", "b....gg.b", "b.......b", "bbbbbbbbb"]
 GIVEN_UP = impossible("no way leads there", "no way leads there")
+STUCK = (
+    "own_goals",
+    "came_to(errand,idle)",
+    "came_to(go,impossible)",
+    "came_to(settle,idle)",
+    "came_to(blame(robot),idle)",
+)
 
 
 def felt(model: WorldModel, but: int = 0) -> WorldModel:
@@ -36,29 +49,46 @@ def felt(model: WorldModel, but: int = 0) -> WorldModel:
 
 def nearest(situation: Situation, scope: FeelingScope = ALL_WALLS) -> str:
     """Return the first open fact, in words; "" for none."""
-    return next((fact.words for fact in open_facts(situation, situation.model.place_on_view, scope)), "")
+    return next((fact.words for fact in open_facts(GIVEN_UP, situation, scope)), "")
+
+
+def ruled(question: OpenQuestion) -> tuple[str, tuple[str, ...]]:
+    """Return the verdict of the agenda on what the robot is stuck with, and the names of the open facts it rests on."""
+    agenda = Agenda(STUCK, (), ())
+    agenda.ask(Activity("doubt", "robot"), question)
+    while isinstance(found := agenda.next(), Activity):
+        assert found == Activity("suppose")
+        agenda.learn(question.answer(agenda.named))
+    agenda.record()
+    return str(found.verdict), agenda.named
+
+
+def told(decision: Decision, situation: Situation, plan_exists: PlanExists = np.any) -> str:
+    """Return the verdict on what was given up, and the open facts that it rests on, in words."""
+    question = OpenQuestion(open_facts(decision, situation), plan_exists)
+    verdict, named = ruled(question)
+    return f"{verdict}: {question.in_words(named)}"
 
 
 def test_a_wall_that_was_never_felt_may_be_an_object() -> None:
-    found = open_fact_against(GIVEN_UP, situation_of(known_model(ROOM)))
-    assert found.verdict == "possible_if" and found.why.startswith("no way leads there; it may be possible if the wall")
+    assert told(GIVEN_UP, situation_of(known_model(ROOM))).startswith("possible_if: the wall")
 
 
 def test_the_only_unfelt_wall_is_named() -> None:
     model = felt(known_model(ROOM), but=1)
-    assert open_fact_against(GIVEN_UP, situation_of(model)).why.endswith(
-        "if the wall at POINT (-3.0 -1.0), which was never felt, is a thing that can be moved"
+    assert told(GIVEN_UP, situation_of(model)).endswith(
+        "the wall at POINT (-3.0 -1.0), which was never felt, is a thing that can be moved"
     )
 
 
 def test_nothing_is_open_where_all_is_felt_and_seen() -> None:
-    assert open_fact_against(GIVEN_UP, situation_of(felt(known_model(ROOM)))).result == "idle"
+    assert told(GIVEN_UP, situation_of(felt(known_model(ROOM)))) == "impossible: "
 
 
 def test_a_wall_felt_to_be_an_object_is_still_open() -> None:
     model = felt(known_model(ROOM))
     thing = replace(model, felt=dict.fromkeys(model.felt, "g"))
-    assert open_fact_against(GIVEN_UP, situation_of(thing)).verdict == "possible_if"
+    assert "possible_if" in told(GIVEN_UP, situation_of(thing))
 
 
 def test_the_floor_may_go_on_where_nothing_was_seen() -> None:
@@ -84,14 +114,14 @@ def test_an_object_with_reached_floor_all_around_leads_a_walking_robot_nowhere()
 
 
 def test_an_open_fact_that_the_decision_names_comes_first() -> None:
-    found = open_fact_against(replace(GIVEN_UP, unless="o1 is more than one thing"), situation_of(known_model(ROOM)))
-    assert found.why == "no way leads there; it may be possible if o1 is more than one thing"
+    stated = replace(GIVEN_UP, unless="o1 is more than one thing")
+    assert told(stated, situation_of(known_model(ROOM))) == "possible_if: o1 is more than one thing"
 
 
 def test_the_unfelt_wall_nearest_to_the_place_of_the_verdict_is_named() -> None:
     model = known_model(ROOM)
     near = replace(GIVEN_UP, near=(5.5, 2.5))
-    assert "the wall at POINT (3.0 0.0)" in open_fact_against(near, situation_of(model)).why
+    assert "the wall at POINT (3.0 0.0)" in told(near, situation_of(model))
 
 
 def test_a_passage_may_be_wider_by_the_squares_of_both_its_walls() -> None:
@@ -135,20 +165,69 @@ def test_floor_that_is_seen_beyond_felt_walls_is_reached_by_an_opening_that_fill
     assert fact(one) == ""
 
 
-@given(st.lists(st.integers(0, 63), min_size=1, max_size=12), st.integers(1, 63))
-def test_the_facts_that_are_named_allow_a_plan_and_none_of_them_can_be_left_out(bits: list[int], wanted: int) -> None:
-    """A fact opens some of six squares, and a plan needs some of these."""
-    facts = [OpenFact(str(n), np.array([bits[n] >> k & 1 for k in range(6)], np.bool_)) for n in range(len(bits))]
+LIKELIEST_FIRST = ("wall", "unseen", "passage")
+FAMILIES = st.lists(
+    st.tuples(st.integers(0, 63), st.sampled_from(LIKELIEST_FIRST), st.integers(1, 9)), min_size=1, max_size=7
+)
+
+
+@settings(deadline=None)
+@given(FAMILIES, st.lists(st.integers(1, 63), min_size=1, max_size=3), st.booleans())
+def test_no_fewer_open_facts_allow_a_plan_and_none_that_are_likelier_or_nearer(
+    family: list[tuple[int, str, int]], plans: list[int], parts: bool
+) -> None:
+    """A fact frees some of six squares, and each of several plans needs some of these."""
 
     def plan_exists(opened: np.ndarray) -> bool:
-        return sum(1 << k for k in range(6) if opened[k]) & wanted == wanted
+        squares = sum(1 << k for k in range(6) if opened[k])
+        return any(squares & plan == plan for plan in plans)
 
-    def allow(some: list[OpenFact]) -> bool:
-        return bool(some) and plan_exists(np.any([fact.opens for fact in some], axis=0))
+    facts = [
+        OpenFact(kind, "", np.array([bits >> k & 1 for k in range(6)], np.bool_), far) for bits, kind, far in family
+    ]
+    question = OpenQuestion([*facts, *([OpenFact("parts", "")] if parts else [])], plan_exists)
+    sets = [some for size in range(1, len(facts) + 1) for some in combinations(range(len(facts)), size)]
+    enough = [some for some in sets if plan_exists(np.any([facts[n].opens for n in some], axis=0))]
 
-    found = least_that_allow(facts, plan_exists)
-    assert allow(found) == allow(facts)
-    assert not any(allow([one for one in found if one is not left_out]) for left_out in found)
+    def price(some: Sequence[int]) -> tuple[int, int, int]:
+        """Return how many facts some are, how unlikely their kinds are, and how far off they are."""
+        return (
+            len(some),
+            sum(LIKELIEST_FIRST.index(facts[n].kind) for n in some),
+            sum(round(10 * facts[n].far) for n in some),
+        )
+
+    verdict, named = ruled(question)
+    if enough:
+        chosen = [int(name[1:]) - 1 for name in named]
+        assert verdict == "possible_if" and tuple(sorted(chosen)) in enough
+        assert price(chosen) == min(map(price, enough))
+    elif parts:
+        assert (verdict, named) == ("possible_if", (f"f{len(facts) + 1}",))
+    else:
+        assert (verdict, named) == ("limit", ())
+
+
+def claims_below(node: ProofNode) -> set[str]:
+    """Return the claims of a proof."""
+    return {node.claim}.union(*map(claims_below, node.children))
+
+
+def test_open_facts_and_what_geometry_answered_are_premises_of_the_verdict() -> None:
+    masks = [np.array(mask, np.bool_) for mask in ([1, 0], [0, 1])]
+    walls = [OpenFact("wall", "", mask, far) for far, mask in enumerate(masks, 1)]
+    with record_decisions() as record:
+        assert ruled(OpenQuestion(walls, lambda opened: bool(opened[1]))) == ("possible_if", ("f2",))
+    proof = explain_decision("agenda", record[-1].facts, record[-1].answer, "verdict(possible_if)").root
+    premises = {
+        "open_fact(f2,wall,20)",
+        "left_out(a2,f2)",
+        "refutes(a2)",
+        "plan_with(f2)",
+        "stuck(robot,impossible)",
+        "helpless",
+    }
+    assert premises <= claims_below(proof)
 
 
 def test_a_wall_that_leads_nowhere_is_not_named() -> None:
@@ -162,6 +241,6 @@ def test_a_wall_that_leads_nowhere_is_not_named() -> None:
         return situation.with_free(opened).cost_maps.nearest(np.flatnonzero(wanted)) is not None
 
     near = replace(GIVEN_UP, near=(0.5, 4.5))
-    west, east = (open_fact_against(near, situation, plan_exists=exists).why for exists in (np.any, plan_exists))
+    west, east = (told(near, situation, exists) for exists in (np.any, plan_exists))
     assert "the wall at POINT (-7.0" in west
     assert "the wall at POINT (4.0 -7.0)" in east

@@ -18,6 +18,7 @@ from utak.kb.language.terms import SourceSpan
 from utak.kb.task.task import Parameter, Task
 from utak.planner.carrying.open_facts import open_facts
 from utak.planner.deciding.feeling import feel_walls, feeling_scope, halts
+from utak.planner.decision import impossible
 from utak.planner.navigation.subgoals import Chosen, Subgoal, choose
 from utak.planner.question import Question
 from utak.planner.sights.walls import FeelingPlace, WallKind, feeling_places
@@ -58,9 +59,9 @@ def test_walls_are_felt_until_none_is_left() -> None:
 def test_where_no_door_is_it_does_not_matter_how_many_things_there_are() -> None:
     """No thing makes a door: only walls and what was never seen may."""
     rows = [*ROOM[:2], *["b..ggg.....b"] * 2, *ROOM[4:]]
-    situation = situation_of(all_felt(known_model(rows)))
+    situation, given_up = situation_of(all_felt(known_model(rows))), impossible("no way", "no way leads there")
     door, corner = (
-        [*open_facts(situation, (0.0, 0.0), feeling_scope(turn_of(Stage(facts_from_text(goal)), situation)))]
+        [*open_facts(given_up, situation, feeling_scope(turn_of(Stage(facts_from_text(goal)), situation)))]
         for goal in ("in(x, room(next)).", "at(x, corner(northeast)).")
     )
     assert door == []
