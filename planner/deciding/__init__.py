@@ -6,7 +6,8 @@ bringing      an object is brought to an end that no goal of its own asks for
 clearing      navigation among movable obstacles: what blocks the robot is moved aside
 obstacles     the objects that block the way, as they lie or as they may go on in a wall
 feeling       before the robot gives up, it feels walls that may be things or have an opening
-trials        what seems one thing is felt all round and moved once, for it may be several; what did not move, each way
+trials        what seems one thing is felt all round and moved once, for it may be several; what did not move, each way;
+              and passages are measured
 pursuit       subgoals of the robot itself: the best one, the route there, the next move
 keeping       whether constraints on the way were kept, by the tracks of the robot and of the things
 search        subgoals while something is missing

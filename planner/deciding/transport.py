@@ -7,11 +7,9 @@ infeasibility certificate proves.
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from math import cos
 
 import numpy as np
 
-from utak.geometry.cspace.bottleneck import least_gap
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import At, End, Inside
 from utak.kb.body import Grasp, Move, Push, Release, Turn
@@ -24,19 +22,20 @@ from utak.planner.carrying.open_facts import proof_if_not_found
 from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.trials import measure_gaps
 from utak.planner.deciding.verification import look_before_grasp, look_for_more
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
 from utak.planner.goals.corner_goal import approach_for_goals
 from utak.planner.goals.joint import conflict
 from utak.planner.goals.object_goals import goal_placement
 from utak.planner.goals.origins import Origins
-from utak.planner.goals.placement import Placement, lies_clear_of, meets_any_end, robot_can_leave, to_view_frame
+from utak.planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
 from utak.planner.goals.robot_goals import unknown_destination
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.per_model import PerModel
-from utak.planner.screen.moves import move_to, orientation_is_uncertain
+from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.situation import Situation
-from utak.planner.skills.measure_gap import Gap, GapMeasurer
+from utak.planner.skills.measure_gap import GapMeasurer
 from utak.planner.skills.measure_size import SizeEstimator, least_outline
 from utak.planner.skills.press import Presser
 from utak.planner.skills.try_passage import PassageTrials
@@ -262,43 +261,9 @@ class Transporter:
         ends, near = must_reach or land.ends, refused.neck()
         instead = self._measure_refused(node, ends, turn) if ends else None
         if instead is None and ends:
-            refused, instead = self._measure_gaps(refused, node, ends, turn)
+            refused, instead = measure_gaps(self._gaps, refused, node, ends, turn)
         instead = instead or self._try_passage(refused, node, ends, turn)
         return instead or replace(decision, unless=refused.unless(), near=near)
-
-    def _measure_gaps(
-        self, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn
-    ) -> tuple[Infeasibility, Decision | None]:
-        """Return a refusal that counts with passages measured too narrow, and the next command to measure another."""
-        situation, least = turn.situation, least_gap(least_outline(node))
-        model = situation.model
-        self._gaps.note(len(turn.track), model)
-        shut = np.zeros_like(model.space)
-        while (
-            refused.unless()
-            and (gap := self._gaps.gap_of(refused.passage, model))
-            and gap.width / cos(model.spread) < least
-        ):
-            exact = self._gaps.is_exact(gap)
-            if exact is None:
-                return refused, self._measure_gap(gap, node, turn)
-            shut = shut | model.squares(gap.squares)
-            if not exact or not lies_clear_of(shut, node, ends, situation):
-                break
-            again = turn.executor.infeasibility(node, ends, situation.with_too_narrow(node.name, shut))
-            if again is None or not again.proved:
-                break
-            refused = again
-        return refused, None
-
-    def _measure_gap(self, gap: Gap, node: Node, turn: StageTurn) -> Decision | None:
-        """Return the next command to measure a gap; None where the robot cannot go there."""
-        why = f"how wide the passage for {node.name} is shows where its walls stop the robot"
-        end = self._gaps.end_of_walk(gap, len(turn.track), turn.situation.model)
-        if end is not None and turn.situation.model.held is None:
-            return Decision(move_to(end, turn.situation.model), f"{why}; {turn.stage}")
-        squares = np.flatnonzero(turn.situation.model.squares(gap.squares))
-        return turn.look_if_reached(Subgoal(SubgoalKind.ATTAIN, squares, why))
 
     def _try_passage(
         self, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn

@@ -1,17 +1,32 @@
-"""Trials: what seems one thing may be several that touch, and what did not move one way may move another way."""
+"""Trials: what seems one thing may be several that touch, and what did not move one way may move another way.
 
-from collections.abc import Sequence
+A passage may be wider than it seems: the robot walks against its sides.
+"""
 
-from utak.geometry.manipulation.goals import At
+from collections.abc import Mapping, Sequence
+from math import cos
+
+import numpy as np
+
+from utak.geometry.cspace.bottleneck import least_gap
+from utak.geometry.manipulation.goals import At, End
 from utak.geometry.motion.se2 import Pose
 from utak.kb.language.terms import Fact
 from utak.kb.objects.movability import square_ways
+from utak.kb.world.model import Node
+from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope, walls_to_feel
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, nothing_to_do
+from utak.planner.goals.placement import lies_clear_of
+from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.screen.moves import move_to
 from utak.planner.sights.things import things_in_question, unfelt_rims
 from utak.planner.situation import Situation
+from utak.planner.skills.measure_gap import GapMeasurer, PassageRow
+from utak.planner.skills.measure_size import least_outline
+from utak.planner.subgoal_kind import SubgoalKind
 
 
 class Trials:
@@ -52,3 +67,36 @@ class Trials:
                 self._moving = node.name
                 return moved
         return nothing_to_do("no thing is left to try")
+
+
+def measure_gaps(
+    gaps: GapMeasurer, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn
+) -> tuple[Infeasibility, Decision | None]:
+    """Return a refusal that counts with passages measured too narrow, and the next command to measure another."""
+    situation, least = turn.situation, least_gap(least_outline(node))
+    model = situation.model
+    gaps.note(len(turn.track), model)
+    shut = np.zeros_like(model.space)
+    while refused.unless() and (gap := gaps.gap_of(refused.passage, model)) and gap.width / cos(model.spread) < least:
+        exact = gaps.is_exact(gap)
+        if exact is None:
+            return refused, _measure(gap, gaps, node, turn)
+        shut = shut | model.squares(gap.squares)
+        if not exact or not lies_clear_of(shut, node, ends, situation):
+            break
+        again = turn.executor.infeasibility(node, ends, situation.with_too_narrow(node.name, shut))
+        if again is None or not again.proved:
+            break
+        refused = again
+    return refused, None
+
+
+def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) -> Decision | None:
+    """Return the next command to measure a gap; None where the robot cannot go there."""
+    model = turn.situation.model
+    why = f"how wide the passage for {node.name} is shows where its walls stop the robot"
+    end = gaps.end_of_walk(gap, len(turn.track), model) if model.held is None else None
+    if end is not None:
+        return Decision(move_to(end, model), f"{why}; {turn.stage}")
+    squares = np.flatnonzero(model.squares(gap.squares))
+    return turn.look_if_reached(Subgoal(SubgoalKind.ATTAIN, squares, why))

@@ -1,4 +1,4 @@
-"""How wide a passage is: the robot walks in it against one side and then against the other.
+"""Measuring a passage: the robot walks in it against one side, and then against the other.
 
 A wall lies anywhere in the squares in which it is seen. Where a walk along a row of floor is stopped, and a short walk
 back leads into the last square of the row, the wall begins at most that far behind the line between the squares:
@@ -18,12 +18,14 @@ from utak.kb.body import DIRECTIONS
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.world.model import WorldModel
 
-BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
-BEYOND = 0.75  # squares behind the line at which the wall may begin, to which the robot is meant to walk; a convention
-MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
+STEP_BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
+BEHIND_LINE = (
+    0.75  # squares behind the line at which the wall may begin, to which the robot is meant to walk; a convention
+)
+OFF_MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
 
 
-class Gap(NamedTuple):
+class PassageRow(NamedTuple):
     """A row of floor from one side of a passage to the other. Squares (x, y) of the map frame."""
 
     squares: tuple[Square, ...]  # in their order, from west to east or from south to north
@@ -31,7 +33,7 @@ class Gap(NamedTuple):
     @property
     def width(self) -> float:
         """Return how wide it is at most where it is measured, in squares."""
-        return len(self.squares) + 2 * BACK
+        return len(self.squares) + 2 * STEP_BACK
 
     @property
     def step(self) -> Square:
@@ -61,7 +63,7 @@ class GapMeasurer:
         self._is_anew = False  # whether the map was begun anew since
         self._walk: _Walk | None = None  # the newest walk of these
 
-    def gap_of(self, passage: Bottleneck | None, model: WorldModel) -> Gap | None:
+    def gap_of(self, passage: Bottleneck | None, model: WorldModel) -> PassageRow | None:
         """Return the row of floor across a passage, view frame; None for no row of whole squares from wall to wall."""
         if passage is None:
             return None
@@ -69,35 +71,35 @@ class GapMeasurer:
         low, high = sorted(side[axis] for side in passage.sides)
         if round(low) != low or round(high) != high or high - low < 2:
             return None
-        gaps = dict[int, Gap]()  # by the place of the row along the passage, as far as its walls are in line
+        gaps = dict[int, PassageRow]()  # by the place of the row along the passage, as far as its walls are in line
         begins = {math.floor(side[1 - axis] + off) for side in passage.sides for off in (0.0, -1.0)}
         for begin, way in product(sorted(begins), (1, -1)):
             for across in count(begin, way):
                 line = [(across, along) if axis else (along, across) for along in range(int(low) - 1, int(high) + 1)]
                 if across in gaps or not _is_from_wall_to_wall(line, model):
                     break
-                gaps[across] = Gap(tuple((x + model.view.west, y + model.view.south) for x, y in line[1:-1]))
+                gaps[across] = PassageRow(tuple((x + model.view.west, y + model.view.south) for x, y in line[1:-1]))
         return min(gaps.values(), key=lambda gap: self.is_exact(gap) is not True, default=None)
 
-    def is_exact(self, gap: Gap) -> bool | None:
-        """Return whether a gap is at most as wide as its squares, and BACK on each side; None while it is not known."""
+    def is_exact(self, gap: PassageRow) -> bool | None:
+        """Return whether a gap is as wide as its squares and at most STEP_BACK on each side; None while not known."""
         sides = [self._exact.get((gap.squares[side], side)) for side in (0, -1)]
         return False if False in sides else None if None in sides else True
 
-    def end_of_walk(self, gap: Gap, looks: int, model: WorldModel) -> XY | None:
+    def end_of_walk(self, gap: PassageRow, looks: int, model: WorldModel) -> XY | None:
         """Return where to the robot shall walk from within a gap, map frame; None while it is not there."""
         # looks : how many there were.
         (x, y), walk = model.place, self._walk
         if walk is not None:  # it stands against the wall now
             self._walk = walk._replace(looks=looks, back=True)
-            return x - BACK * walk.step[0], y - BACK * walk.step[1]
-        if _square(model.place) not in gap.squares or abs((y if gap.step[0] else x) % 1 - 0.5) > MIDDLE:
+            return x - STEP_BACK * walk.step[0], y - STEP_BACK * walk.step[1]
+        if _square(model.place) not in gap.squares or abs((y if gap.step[0] else x) % 1 - 0.5) > OFF_MIDDLE:
             return None
         side = 0 if (gap.squares[0], 0) not in self._exact else -1
         step = gap.step if side else (-gap.step[0], -gap.step[1])
         self._walk = _Walk(looks, gap.squares[side], side, step)
         column, row = gap.squares[side]
-        far = step[0] * (column + 0.5 - x) + step[1] * (row + 0.5 - y) + 0.5 + BEYOND
+        far = step[0] * (column + 0.5 - x) + step[1] * (row + 0.5 - y) + 0.5 + BEHIND_LINE
         return x + far * step[0], y + far * step[1]
 
     def note(self, looks: int, model: WorldModel) -> None:

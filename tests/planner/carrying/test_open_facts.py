@@ -25,6 +25,7 @@ from utak.planner.carrying.open_facts import (
     proof_if_not_found,
 )
 from utak.planner.decision import Decision, impossible
+from utak.planner.question import Question
 from utak.planner.sights.walls import ALL_WALLS, FeelingScope, unfelt_walls
 from utak.planner.situation import Situation
 
@@ -54,12 +55,12 @@ def nearest(situation: Situation, scope: FeelingScope = ALL_WALLS) -> str:
 
 def ruled(question: OpenQuestion) -> tuple[str, tuple[str, ...]]:
     """Return the verdict of the agenda on what the robot is stuck with, and the names of the open facts it rests on."""
-    agenda = Agenda(STUCK, (), ())
+    agenda = Agenda(Question(facts=tuple(STUCK)))
     agenda.ask(Activity("doubt", "robot"), question)
     while isinstance(found := agenda.next(), Activity):
         assert found == Activity("suppose")
         agenda.learn(question.answer(agenda.named))
-    agenda.record()
+    agenda.question.recorded()
     return str(found.verdict), agenda.named
 
 
@@ -218,7 +219,7 @@ def test_open_facts_and_what_geometry_answered_are_premises_of_the_verdict() -> 
     walls = [OpenFact("wall", "", mask, far) for far, mask in enumerate(masks, 1)]
     with record_decisions() as record:
         assert ruled(OpenQuestion(walls, lambda opened: bool(opened[1]))) == ("possible_if", ("f2",))
-    proof = explain_decision("agenda", record[-1].facts, record[-1].answer, "verdict(possible_if)").root
+    proof = explain_decision("deciding", record[-1].facts, record[-1].answer, "verdict(possible_if)").root
     premises = {
         "open_fact(f2,wall,20)",
         "left_out(a2,f2)",
