@@ -8,8 +8,9 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-Cell = tuple[int, int]  # (column, row), row 0 in the south
-STEPS: tuple[Cell, ...] = ((1, 0), (0, 1), (-1, 0), (0, -1))
+from utak.simulator.importing.raster import RasterCell
+
+CELL_STEPS: tuple[RasterCell, ...] = ((1, 0), (0, 1), (-1, 0), (0, -1))
 MAX_LAYOUTS = 5_000  # layouts that are looked at; a bound on time
 
 
@@ -17,17 +18,17 @@ class PushPuzzle(NamedTuple):
     """A world of cells in which things shall be brought elsewhere."""
 
     size: tuple[int, int]  # columns, rows
-    walls: frozenset[Cell]
-    things: tuple[frozenset[Cell], ...]  # the cells of each thing as it lies at first
-    robot: Cell
-    goals: Mapping[int, Cell]  # by how far each thing shall be brought, by its number
+    walls: frozenset[RasterCell]
+    things: tuple[frozenset[RasterCell], ...]  # the cells of each thing as it lies at first
+    robot: RasterCell
+    goals: Mapping[int, RasterCell]  # by how far each thing shall be brought, by its number
 
 
 class _Layout(NamedTuple):
-    """How everything lies: by how far each thing was moved, and the least cell that the robot can go to."""
+    """The places of all things, by how far each was moved, and the part of the floor to which the robot can go."""
 
-    moves: tuple[Cell, ...]
-    robot: Cell
+    moves: tuple[RasterCell, ...]
+    robot: RasterCell
 
 
 def fewest_pushes(puzzle: PushPuzzle, fixed: Iterable[int] = ()) -> int | None:
@@ -55,9 +56,9 @@ def _after(puzzle: PushPuzzle, layout: _Layout, movable: Iterable[int]) -> Itera
     reached = _reached(puzzle, frozenset().union(*places), layout.robot)
     for number in movable:
         others = frozenset().union(*(cells for other, cells in enumerate(places) if other != number))
-        beside = {moved_cell(cell, step) for cell in places[number] for step in STEPS} & reached
+        beside = {moved_cell(cell, step) for cell in places[number] for step in CELL_STEPS} & reached
         for robot in sorted(beside):
-            for step in STEPS:
+            for step in CELL_STEPS:
                 both = {*moved_cells(places[number], step), moved_cell(robot, step)}
                 if any(cell in others or not _is_floor(puzzle, cell) for cell in both):
                     continue
@@ -66,18 +67,18 @@ def _after(puzzle: PushPuzzle, layout: _Layout, movable: Iterable[int]) -> Itera
                 yield _layout(puzzle, tuple(moves), moved_cell(robot, step))
 
 
-def _layout(puzzle: PushPuzzle, moves: tuple[Cell, ...], robot: Cell) -> _Layout:
+def _layout(puzzle: PushPuzzle, moves: tuple[RasterCell, ...], robot: RasterCell) -> _Layout:
     """Return a layout with the robot anywhere that it can go to."""
     places = (moved_cells(cells, move) for cells, move in zip(puzzle.things, moves, strict=True))
     return _Layout(moves, min(_reached(puzzle, frozenset().union(*places), robot)))
 
 
-def _reached(puzzle: PushPuzzle, taken: frozenset[Cell], robot: Cell) -> set[Cell]:
+def _reached(puzzle: PushPuzzle, taken: frozenset[RasterCell], robot: RasterCell) -> set[RasterCell]:
     """Return the cells that the robot can go to."""
     reached, waiting = {robot}, [robot]
     while waiting:
         cell = waiting.pop()
-        for step in STEPS:
+        for step in CELL_STEPS:
             to = moved_cell(cell, step)
             if to not in reached and to not in taken and _is_floor(puzzle, to):
                 reached.add(to)
@@ -85,16 +86,16 @@ def _reached(puzzle: PushPuzzle, taken: frozenset[Cell], robot: Cell) -> set[Cel
     return reached
 
 
-def _is_floor(puzzle: PushPuzzle, cell: Cell) -> bool:
+def _is_floor(puzzle: PushPuzzle, cell: RasterCell) -> bool:
     columns, rows = puzzle.size
     return 0 <= cell[0] < columns and 0 <= cell[1] < rows and cell not in puzzle.walls
 
 
-def moved_cell(cell: Cell, move: Cell) -> Cell:
+def moved_cell(cell: RasterCell, move: RasterCell) -> RasterCell:
     """Return a cell moved by (columns, rows)."""
     return cell[0] + move[0], cell[1] + move[1]
 
 
-def moved_cells(cells: Iterable[Cell], move: Cell) -> frozenset[Cell]:
+def moved_cells(cells: Iterable[RasterCell], move: RasterCell) -> frozenset[RasterCell]:
     """Return cells moved by (columns, rows)."""
     return frozenset(moved_cell(cell, move) for cell in cells)

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.orders.asked import SOLVABLE_FILE, SOLVABLE_WORD
-from benchmarks.worlds.cells.pushing import STEPS, Cell, PushPuzzle, fewest_pushes, moved_cell, moved_cells
+from benchmarks.worlds.cells.pushing import CELL_STEPS, PushPuzzle, fewest_pushes, moved_cell, moved_cells
 from utak.simulator.cli.commands.files.import_scenario import scenario_files
 from utak.simulator.importing.imported import Imported, ObjectGoal, task_of_objects
 from utak.simulator.importing.pushworld import BORDER_SQUARES, SQUARES_A_CELL
-from utak.simulator.importing.raster import CellWorld, world_text
+from utak.simulator.importing.raster import CellWorld, RasterCell, world_text
 from utak.simulator.scenario.folder_writer import write_folder
 
 # one: a single thing. two: two things with a goal each. door: a thing fills the opening, and has to be moved.
@@ -26,7 +26,7 @@ from utak.simulator.scenario.folder_writer import write_folder
 PUZZLE_KINDS = ("one", "two", "door", "blocks", "touching")
 SIDES = (5, 9)  # cells, the least and one more than the most; conventions, like all numbers here
 WALL_SHARE = 0.08  # of the cells beside the wall across
-FORMS: tuple[frozenset[Cell], ...] = (
+FORMS: tuple[frozenset[RasterCell], ...] = (
     frozenset({(0, 0)}),
     frozenset({(0, 0), (1, 0)}),
     frozenset({(0, 0), (0, 1)}),
@@ -64,8 +64,8 @@ def _drawn(rng: np.random.Generator, kind: str) -> PushPuzzle | None:
     wanted = 2 if kind == "two" else 1
     others = {"one": 0, "two": 0, "door": int(rng.integers(2))}.get(kind, int(rng.integers(1, 3)))
     things = [frozenset({opening})] if kind == "door" else []
-    taken = set[Cell]().union(*things, walls)
-    meant = list[frozenset[Cell]]()
+    taken = set[RasterCell]().union(*things, walls)
+    meant = list[frozenset[RasterCell]]()
     for number in range(wanted + others):
         form = FORMS[0] if rng.random() < SINGLE_CELL_SHARE else FORMS[int(rng.integers(1, len(FORMS)))]
         cells_of = moved_cells(form, free[int(rng.integers(len(free)))])
@@ -75,8 +75,8 @@ def _drawn(rng: np.random.Generator, kind: str) -> PushPuzzle | None:
         (meant if number < wanted else things).append(cells_of)
     left = [cell for cell in free if cell not in taken]
     robot = left[int(rng.integers(len(left)))]
-    goals = dict[int, Cell]()
-    there = set[Cell]()
+    goals = dict[int, RasterCell]()
+    there = set[RasterCell]()
     for number, cells_of in enumerate(meant):
         to, least = free[int(rng.integers(len(free)))], min(cells_of)
         goals[number] = to[0] - least[0], to[1] - least[1]
@@ -100,7 +100,7 @@ def _is_wanted(puzzle: PushPuzzle, kind: str) -> bool:
 
 def _touches_another(puzzle: PushPuzzle) -> bool:
     """Return whether the first thing, which has a goal, touches another one along a side."""
-    beside = {moved_cell(cell, step) for cell in puzzle.things[0] for step in STEPS}
+    beside = {moved_cell(cell, step) for cell in puzzle.things[0] for step in CELL_STEPS}
     return any(beside & other for other in puzzle.things[1:])
 
 
