@@ -79,10 +79,10 @@ def with_embedded_things(things: list[Bools], felt: Mapping[RowColumn, str], sol
                 for number, thing in enumerate(found)
                 if (thing & near).any() and _is_felt_as(colour, thing, felt)
             ]
-            if not like:
-                found.append(part)
-                continue
-            found[like[0]] = _within_rectangle(found[like[0]] | part, solid, felt)
+            if like:
+                found[like[0]] = _within_rectangle(found[like[0]] | part, colour, solid, felt)
+            else:
+                found.append(_within_rectangle(part, colour, solid, felt))
     return found
 
 
@@ -140,13 +140,13 @@ def _upright_bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
     return mask
 
 
-def _within_rectangle(thing: Bools, solid: Bools, felt: Mapping[RowColumn, str]) -> Bools:
-    """Return a thing with all that is solid in its containing rectangle, unless verge was felt there: then itself."""
+def _within_rectangle(thing: Bools, colour: str, solid: Bools, felt: Mapping[RowColumn, str]) -> Bools:
+    """Return a thing with all that is solid in its containing rectangle; itself where another colour was felt there."""
     rows, columns = np.flatnonzero(thing.any(1)), np.flatnonzero(thing.any(0))
     mask: Bools = np.zeros_like(thing)
     mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] = True
     mask &= solid
-    return thing if any(mask[place] and colour == VERGE_TOUCH_COLOUR for place, colour in felt.items()) else mask
+    return thing if any(mask[place] and other != colour for place, other in felt.items()) else mask
 
 
 def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[Bools]:

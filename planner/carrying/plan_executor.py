@@ -203,10 +203,9 @@ class PlanExecutor:
         self.failed.record(node, situation.model)
         return unplanned_act(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
 
-    def drop_other_plan(self, name: str) -> None:
-        """Drop the plan under way unless it carries the object `name`; nothing happens when there is none."""
-        if self._plan is not None and self._plan.name != name:
-            self._plan = None
+    def serves(self, name: str) -> bool:
+        """Return whether the plan under way carries the object `name`, or clears its way."""
+        return self._plan is not None and name in (self._plan.name, self._asked)
 
     def depart(self, act: Act) -> None:
         """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan."""

@@ -28,7 +28,6 @@ def bring_to_end(node: Node, ends: Mapping[str, End], turn: StageTurn, purpose: 
     more = turn.look_if_reached(look_for_more(node, turn.situation))
     if more is not None:
         return more
-    turn.executor.drop_other_plan(node.name)
     advice = turn.executor.advise(node, ends, turn.situation)
     if not isinstance(advice, Act):
         return turn.prepare(advice)

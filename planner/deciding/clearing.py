@@ -50,7 +50,8 @@ class ObstacleClearer:
             last = self._supposed
             again = None if last is None else suppose(node, last.side, last.depth, turn.situation)
             decided = carry_on(node, turn if again is None else turn.within(again.situation))
-        if decided is None and node is not None and held in (None, node.name):
+        serves = held in (None, self._moving) or turn.executor.serves(self._moving)  # what is in its way, too
+        if decided is None and node is not None and serves:
             decided = self._move_first(self._movable(turn.situation), turn, node.name) or another_way(node, turn)
         if decided is None:
             gone, self._moving = self._moving, ""

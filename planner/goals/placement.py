@@ -167,6 +167,8 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
     found, last = np.zeros_like(mask), mask
     for _ in range(depth if not node.moved else 0):
         last = shift_mask(last, *side) & model.verge & ~mask
+        if not last.any():
+            break
         found |= last
     return found
 

@@ -193,8 +193,10 @@ def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
 def shift_mask(mask: NDArray[T], columns: int, rows: int) -> NDArray[T]:
     """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; what comes in from outside is False or 0."""
     high, wide = mask.shape
-    padded = np.pad(mask, 1)
-    return padded[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]
+    moved = np.zeros_like(mask)
+    to, of = ((slice(max(0, s), n + min(0, s)) for n, s in ((high, k * rows), (wide, k * columns))) for k in (1, -1))
+    moved[*to] = mask[*of]
+    return moved
 
 
 def dilate(mask: Bools, squares: int) -> Bools:

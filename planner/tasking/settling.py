@@ -23,7 +23,7 @@ def plan_that_settles(
     """Return the plan of the encoding where something is open, and words for what users' rules keep out of it."""
     # The words name the steps that may settle something, and the rules because of which there is none; "" where there
     # is one.
-    facts = list(given)
+    facts = [*given, *["shaken"] * situation.model.shaken]
     if situation.model.held is not None:
         facts.append(f"holds({situation.model.held})")
     if problem is None:

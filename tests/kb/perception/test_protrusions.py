@@ -157,6 +157,15 @@ def test_what_was_felt_in_a_straight_wall_is_a_thing_of_the_felt_squares() -> No
     ]
 
 
+def test_what_was_felt_on_three_sides_of_a_thing_before_a_wall_is_all_of_it() -> None:
+    occupied, thing = with_thing(6, 2, full(3, 3))
+    felt = {(row, column): "g" for row, column in np.argwhere(thing).tolist() if row != 7 or column != 3}
+    (whole,) = with_embedded_things([], felt, occupied)
+    assert (whole == thing).all()
+    (part,) = with_embedded_things([], {**felt, (7, 3): "k"}, occupied)[:1]  # another thing is within it
+    assert not part[7, 3]
+
+
 def test_what_was_felt_beside_a_thing_of_its_colour_belongs_to_it() -> None:
     occupied, thing = with_thing(6, 2, full(4, 3))
     felt = {(6, 4): "g", (6, 1): "g", (9, 1): "g", (5, 1): "b"}

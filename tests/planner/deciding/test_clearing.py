@@ -120,6 +120,17 @@ def test_an_obstacle_is_grasped_and_its_plan_is_continued() -> None:
     assert Clearing().on(UTAK, held).result == "idle"
 
 
+def test_what_is_in_the_way_of_an_obstacle_is_moved_on_once_it_is_in_hand() -> None:
+    row = "b" + "." * 10 + "bb..b"
+    plugged = ["b......kk.ggg..b"] * 3  # what fills the doorway can but be pulled, past another thing
+    drawn = ["b" * 16, *[row] * 5, *plugged, "b.......U..bb..b", *[row] * 5, "b" * 16]
+    situation, clearing = felt(known(drawn)), Clearing()
+    taken = clearing.before(UTAK, situation)
+    assert isinstance(taken.command, Grasp)
+    assert taken.why.startswith("g blocks the robot's way: k is grasped")
+    assert isinstance(clearing.on(UTAK, situation_of(replace(situation.model, held="k"))).command, Push | Turn)
+
+
 def test_the_way_to_an_obstacle_is_continued_whatever_else_there_is_to_do() -> None:
     situation, clearing = known(BEFORE), Clearing()
     assert clearing.on(UTAK, situation).result == "idle"

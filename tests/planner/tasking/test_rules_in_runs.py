@@ -60,6 +60,13 @@ def test_a_price_that_a_rule_states_replaces_the_default(tmp_path: Path) -> None
     assert [str(errand) for errand in propose(facts, (cheap,)).errands] == ["feel(g1)"]
 
 
+@pytest.mark.parametrize("spoilt", ["missing(g1)", "any_way", "shaken"])
+def test_before_a_goal_is_given_up_with_nothing_proved_things_are_felt_all_round(spoilt: str) -> None:
+    facts = ("horizon(1)", "goal(g1)", "stuck(g1,limit)")
+    assert "try(g1)" in propose(facts, ()).left
+    assert "try(g1)" not in propose((*facts, spoilt), ()).left
+
+
 @pytest.mark.parametrize(
     ("rule", "hint"),
     [
