@@ -108,7 +108,7 @@ class Activities:
                 continue
             asked = asked.within(replace(turn.situation, question=agenda.question.keeping(f"do({found})")))
             decision = self._transporter.led_out(self._allowed(self._do(found, asked, last), found, asked), asked)
-            decision = _done_by_rules(decision, turn.situation)
+            decision = _done_by_rules(decision, asked.situation)
             if decision.command is not None:
                 self._note_step(found, decision, turn)
                 self._note_pursuit(found, turn)
