@@ -3,9 +3,10 @@
     python -m benchmarks.unchanged write FOLDER --count 100
     python -m benchmarks.episodes.planned FOLDER
 
-Compared are the command of a step and the facts plan/2 and step/2 of the step before it; and, without the rules of
-planner/asp/deciding, whether the steps can be done one after the other. Printed are what differs, how many commands
-each step of a plan gave, and how many were reflexes of a robot that does not know where it is.
+Compared are the command of a step and the facts plan/2 and step/2 of the step before it; its reason and the subgoal
+that the last answer of planner/asp/deciding chose; and, without the rules of planner/asp/deciding, whether the steps
+can be done one after the other. Printed are what differs, how many commands each step of a plan gave, and how many were
+reflexes of a robot that does not know where it is.
 """
 
 import argparse
@@ -35,6 +36,9 @@ def planned(line: Mapping[str, Any]) -> tuple[list[str], list[str]]:
 def differences(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """Yield in words where a command is not the first step of what was planned, or what is planned cannot be done."""
     for before, line in pairwise(lines):
+        subgoal = _chosen(lines, before)
+        if not line["why"].startswith(subgoal):
+            yield f"step {line['step']}: {line['why']} is not for what was chosen: {subgoal}"
         plans, steps = planned(before)
         if len(plans) != 1 or not steps:
             yield f"step {line['step']}: planned were {plans} and {steps}"
@@ -45,6 +49,20 @@ def differences(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             (atom_parts(f.removesuffix("."))[1][0] for f in before["belief"]["facts"] if f.startswith("held(")), None
         )
         yield from (f"step {line['step']}: {wrong}" for wrong in _not_possible(steps, held))
+
+
+def _chosen(lines: Sequence[Mapping[str, Any]], line: Mapping[str, Any]) -> str:
+    """Return in words the subgoal that the last decision of a line chose; "" where it chose none."""
+    entries = [entry for entry in line["belief"]["solved"] if entry[0] == "deciding"]
+    if not entries:
+        return ""
+    _, facts_or_place, *rest = entries[-1]
+    if not rest:  # it stands in an earlier line
+        step, index = facts_or_place
+        _, _, *rest = lines[step]["belief"]["solved"][index]
+    answer, about = rest
+    numbers = [int(atom_parts(atom)[1][0]) for atom in answer or () if atom.startswith("choose(")]
+    return str(about[numbers[0]]) if numbers else ""
 
 
 def _is_first(action: Mapping[str, Any], step: str) -> bool:
