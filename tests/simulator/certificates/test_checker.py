@@ -1,0 +1,202 @@
+"""Certificates made by hand, right and wrong, and some that the search found."""
+
+import json
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.certificates.drawn import drawn_walk
+from benchmarks.certificates.mutants import mutants
+from benchmarks.certificates.recorded import RecordedWalk, recorded_walk
+from benchmarks.certificates.truth import lost_truth
+from tests.tables import few
+from utak.kb.body import Command, Grasp, Move
+from utak.simulator.certificates.checker import FIELD_OFFSETS, Evidence, RefusedError, level_range, verify
+from utak.simulator.certificates.done import NoCertificateError, done_certificate
+from utak.simulator.cli.main import main
+from utak.simulator.scenario.picture import read_picture
+
+ROOM = """
+bbbbbbbbbbbb
+b.........Ub
+b..........b
+b..gg......b
+b..gg......b
+b..........b
+bbbbbbbbbbbb
+"""
+NORTH, EAST = FIELD_OFFSETS.index((0, 1, 1)), FIELD_OFFSETS.index((1, 0, 1))
+Change = Callable[[dict[str, Any]], None]
+
+
+def walk(
+    tmp_path: Path, room: str, commands: Sequence[Command], *goals: str, claims: Sequence[str] = ()
+) -> RecordedWalk:
+    path = tmp_path / "world.txt"
+    path.write_text(room.strip() + "\n")
+    return recorded_walk(read_picture(path), commands, goals, claims)
+
+
+def certificate(walk: RecordedWalk, cases: list[Any], **more: Any) -> dict[str, Any]:
+    steps = [len(walk.places) - 1] * len(walk.goals)
+    head = {"utak": "certificate", "version": 1, "claim": "done", "goals": list(walk.goals)}
+    return {**head, "steps": steps, "meaning": {}, "given": [], "cases": cases, **more}
+
+
+def shown(walk: RecordedWalk, stated: dict[str, Any]) -> str:
+    return verify(walk.text, json.dumps(stated))
+
+
+def refused(walk: RecordedWalk, stated: dict[str, Any]) -> str:
+    with pytest.raises(RefusedError) as caught:
+        shown(walk, stated)
+    return str(caught.value)
+
+
+def in_corner(tmp_path: Path) -> tuple[RecordedWalk, dict[str, Any]]:
+    """Return a robot that wakes in the corner, and the certificate that it is there, by two counts."""
+    found = walk(tmp_path, ROOM, [], "at(utak,corner(northeast))")
+    counts = [["count", [0, NORTH, 1]], ["count", [0, EAST, 1]]]
+    return found, certificate(found, [["angle", 0], *counts, ["holds"]], given=["along(grid)"])
+
+
+def test_levels_stand_for_the_counts_that_show_them() -> None:
+    assert [level_range(level, 4) for level in (0, 1, 7)] == [(0, 1), (2, 3), (15, 16)]
+    assert [level_range(level, 2) for level in (0, 2, 4, 5, 7)] == [(n, n) for n in range(5)]
+    with pytest.raises(ValueError, match="never shows"):
+        level_range(3, 2)
+
+
+def test_two_counts_show_a_corner(tmp_path: Path) -> None:
+    found, stated = in_corner(tmp_path)
+    assert shown(found, stated) == "done: at(utak,corner(northeast)) at step 0; given along(grid)"
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda c: c["cases"].pop(1), "may not hold"),  # a wall is not settled
+        (lambda c: c["cases"].pop(3), "before all cases are treated"),
+        (lambda c: c.update(given=[]), "before all cases are treated"),  # 89 orientations are left
+        (lambda c: c.update(goals=["at(utak,corner(southwest))"]), "of the goals of the episode"),
+        (lambda c: c.update(steps=[1]), "step for each goal"),
+        (lambda c: c.update(more=1), "no others"),
+        (lambda c: c["cases"].insert(1, ["trust", "me"]), "no line that may stand here"),
+        (lambda c: c["cases"].insert(1, ["end", 0, 0]), "no line that may stand here"),
+        (lambda c: c["cases"].insert(1, ["count", [1, NORTH, 1]]), "no line that may stand here"),  # no such impression
+        (lambda c: c["cases"].insert(1, ["count", [0, NORTH, True]]), "no line that may stand here"),
+    ],
+)
+def test_what_does_not_show_it_is_refused(tmp_path: Path, change: Change, why: str) -> None:
+    found, stated = in_corner(tmp_path)
+    change(stated)
+    assert why in refused(found, stated)
+
+
+def test_another_corner_is_further(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,corner(southeast))")
+    wrong = certificate(found, in_corner(tmp_path)[1]["cases"], given=["along(grid)"])
+    assert "may not hold" in refused(found, wrong)
+
+
+def test_the_place_of_waking_is_shown_in_each_orientation(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,start)")
+    cases = [line for angle in range(90) for line in (["angle", angle], ["holds"])]
+    assert shown(found, certificate(found, cases)) == "done: at(utak,start) at step 0"
+    assert "no line that may stand here" in refused(found, certificate(found, cases[:40] + cases[42:]))
+    assert "agrees with no world" in refused(found, certificate(found, []))
+
+
+def test_a_thing_is_what_was_felt(tmp_path: Path) -> None:
+    room = ROOM.replace("U", ".").replace("b..gg......b", "b..ggU.....b", 1)
+    found = walk(tmp_path, room, [], "at(utak,x)", claims=["colour(x,g)", "shape(x,square)"])
+    stated = certificate(found, [], meaning={"x": [0, 6]}, given=["shape(x,square)"])
+    assert shown(found, stated).endswith("x is the thing felt at step 0, touch 6; given shape(x,square)")
+    assert "must be" in refused(found, stated | {"given": []})
+    assert "no thing was felt" in refused(found, stated | {"meaning": {"x": [0, 2]}})
+    assert "named by a step" in refused(found, stated | {"meaning": {"x": [1, 6]}})
+    assert "of each thing" in refused(found, stated | {"meaning": {"y": [0, 6]}})
+    red = walk(tmp_path, room, [], "at(utak,x)", claims=["colour(x,r)"])
+    assert "another colour" in refused(red, certificate(red, [], meaning={"x": [0, 6]}, given=["colour(x,r)"]))
+
+
+def test_the_verge_is_no_thing(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,x)")
+    assert "no thing was felt" in refused(found, certificate(found, [], meaning={"x": [0, 0]}))
+
+
+def test_a_walk_there_and_back_is_found_in_all_orientations(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [Move(-7.0, 0.0), Move(7.0, 0.0)], "at(utak,start)")
+    assert verify(found.text, done_certificate(found.text)) == "done: at(utak,start) at step 2"
+
+
+def test_a_robot_that_was_stopped_has_no_certificate(tmp_path: Path) -> None:
+    room = ROOM.replace("U", ".").replace("b..gg......b", "b..gg...U..b", 1)
+    found = walk(tmp_path, room, [Move(-7.0, 0.0), Move(7.0, 0.0)], "at(utak,start)")
+    assert abs(found.places[-1][0] - found.places[0][0]) > 1
+    with pytest.raises(NoCertificateError):
+        done_certificate(found.text)
+
+
+def test_after_a_grasp_of_something_nothing_is_said_of_places(tmp_path: Path) -> None:
+    room = ROOM.replace("U", ".").replace("b..gg......b", "b..ggU.....b", 1)
+    found = walk(tmp_path, room, [Grasp("west"), Move(1.0, 0.0)], "at(utak,start)")
+    with pytest.raises(NoCertificateError, match="may have grasped"):
+        done_certificate(found.text)
+    assert Evidence(walk(tmp_path, room, [Grasp("east")], "at(utak,start)").text).motion(1) == (0, 0)
+
+
+@pytest.mark.parametrize(("key", "value"), [("forked", []), ("options", {"noise": 0.1, "kb": []})])
+def test_in_other_circumstances_nothing_is_said_of_places(tmp_path: Path, key: str, value: Any) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,start)")
+    head, *rows = found.text.splitlines(keepends=True)
+    text = json.dumps(json.loads(head) | {key: value}) + "\n" + "".join(rows)
+    with pytest.raises(RefusedError, match="nothing is said of where the robot is"):
+        verify(text, json.dumps(certificate(found, [["angle", 0], ["holds"]], given=["along(grid)"])))
+
+
+@pytest.mark.parametrize("goal", ["in(utak,room(next))", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"])
+def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
+    found = walk(tmp_path, ROOM, [], goal)
+    assert "certificates show nothing of" in refused(found, certificate(found, []))
+
+
+def test_mutants_that_are_accepted_claim_the_same(tmp_path: Path) -> None:
+    goals = "first(at(utak,corner(northeast)))", "then(at(utak,start))"
+    found = walk(tmp_path, ROOM, [Move(-2.0, -1.0), Move(2.0, 1.0)], *goals)
+    stated = json.loads(done_certificate(found.text))
+    stated["cases"] = stated["cases"][: stated["cases"].index(["angle", 1])]
+    stated["given"] = ["along(grid)"]
+    assert shown(found, stated)
+    accepted = 0
+    for mutant in mutants(stated, 200, seed=1):
+        with suppress(RefusedError):
+            shown(found, mutant)
+            accepted += 1
+            assert (mutant["steps"], mutant["given"]) == (stated["steps"], stated["given"])
+    assert 0 < accepted < 60  # such as a line told twice
+
+
+@pytest.mark.parametrize("seed", few(range(30), 6))
+def test_the_rules_allow_what_happened(seed: int) -> None:
+    assert lost_truth(drawn_walk(seed)) == ""
+
+
+def test_the_command_says_what_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found, stated = in_corner(tmp_path)
+    episode, good, bad = tmp_path / "ep.jsonl", tmp_path / "good.json", tmp_path / "bad.json"
+    episode.write_text(found.text)
+    good.write_text(json.dumps(stated))
+    bad.write_text(json.dumps(stated | {"steps": []}))
+    assert main(["verify", str(episode), str(good)]) == 0
+    assert capsys.readouterr().out.startswith("accepted: done: at(utak,corner(northeast))")
+    assert main(["verify", str(episode), str(bad)]) == 1
+    assert capsys.readouterr().out.startswith("refused: ")
+    assert main(["verify", str(good), str(good)]) == 65
+    assert "good.json" in capsys.readouterr().err
+    good.write_text('{"utak": 1, "utak": 1e99999}')
+    assert main(["verify", str(episode), str(good)]) == 65
+    assert main(["verify", str(episode), str(tmp_path / "none")]) == 66
