@@ -7,6 +7,7 @@ or the goals hold.
 
 import itertools
 import json
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -54,11 +55,23 @@ class UsefulCount(NamedTuple):
     settled: frozenset[Spot]
 
 
-def done_certificate(episode_text: str) -> str:
-    """Return the certificate of an episode whose verdict is done, as the text of its file.
+def is_certificate(head: bytes) -> bool:
+    """Return whether a file with these first bytes is a certificate."""
+    return re.match(rb'\s*\{\s*"utak"\s*:\s*"certificate"', head) is not None
+
+
+def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
+    """Return the certificate of a run, as the text of its file, from the lines of its episode.
 
     Raises NoCertificateError where none is found.
     """
+    if verdict != "done":
+        raise NoCertificateError(f"certificates show done, and the verdict is {verdict or 'not there yet'}")
+    return done_certificate("".join(lines))
+
+
+def done_certificate(episode_text: str) -> str:
+    """Return the certificate that the goals of an episode hold at its end; raises NoCertificateError where none is."""
     episode = Evidence(episode_text)
     try:
         certificate = _likely(episode)

@@ -147,8 +147,9 @@ RUN = (
     ),
     at("the last step of --from that is repeated"),
     value("--from-kb", "FILE", "a file of rules of the repeated run; repeatable", action="append", default=[]),
+    value("--certificate", "FILE", "write why the verdict follows, for `utak verify`, where that can be shown"),
     value("--dump-asp", "DIR", DUMP),
-    flag("--force", "let --log and --html overwrite files of other kinds, and --dump-asp fill a folder"),
+    flag("--force", "let --log, --html, --certificate overwrite files of other kinds, and --dump-asp fill a folder"),
     flag("--json", "print the result as one JSON object"),
     flag(
         "--watch",
