@@ -10,7 +10,7 @@ from utak.beliefs import World, world_of
 from utak.explaining import ReasonTree
 from utak.kb.body import Impression
 from utak.markup import framed, table
-from utak.simulator.certificates.done import certificate_of
+from utak.simulator.certificates.search import certificate_of
 from utak.simulator.episode.episode import Episode as EpisodeRecord
 from utak.simulator.episode.episode import encode, read_episode
 from utak.simulator.episode.output_files import is_episode, write_whole

@@ -19,7 +19,7 @@ from benchmarks.certificates.mutants import mutants
 from benchmarks.certificates.recorded import RecordedWalk
 from benchmarks.certificates.truth import holds, is_given, lost_truth
 from utak.simulator.certificates.checker import RefusedError, verify
-from utak.simulator.certificates.done import NoCertificateError, done_certificate
+from utak.simulator.certificates.search import NoCertificateError, certificate_of
 
 
 def main() -> int:
@@ -41,7 +41,7 @@ def main() -> int:
             counts["followed"] += 1
             continue
         try:
-            text = done_certificate(walk.text)
+            text = certificate_of(walk.text.splitlines(keepends=True), "done")
         except NoCertificateError:
             attained = holds(walk, goal, len(walk.places) - 1, {"x": [0, 0]}) if "circled" not in goal else None
             counts[f"{goal[:10]} none, attained {attained}"] += 1

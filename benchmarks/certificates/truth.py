@@ -9,7 +9,7 @@ import shapely
 from benchmarks.certificates.recorded import RecordedWalk
 from utak.geometry.counts.retina import FIELDS
 from utak.simulator.certificates.checker import Evidence, Sampling
-from utak.simulator.certificates.done import settle_all, waking_case
+from utak.simulator.certificates.search import settle_all, waking_case
 from utak.simulator.world.table import Table
 
 SLACK = 1e-5  # squares; what the checker allows for rounding

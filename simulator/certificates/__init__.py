@@ -3,5 +3,5 @@
 Modules in reading order:
 
 checker  whether the claim of a certificate follows from what was seen, felt and commanded
-done     the certificate of a run that is done, found by trying all that may have happened
+search   the certificate of a verdict, found by trying all that may have happened
 """

@@ -7,14 +7,18 @@ nothing, compares no floats, and reads neither beliefs nor the truth of an episo
 import json
 import re
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from typing import Any, NamedTuple, NoReturn
 
+CLAIMS = ("done", "impossible")
 KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "cases")
 SHOWN_GOAL = re.compile(
     r"(?P<order>(?:first|then)\()?(?:at\(utak,corner\((?P<corner>\w+)\)\)|(?:at|beside)\(utak,(?P<thing>\w+)\)"
     r"|circled\(utak,(?P<circled>\w+)\))(?(order)\))"
 )
+BARRED_GOAL = re.compile(r"(?:(?:first|then)\()?(?:in\(utak,room\(next\)\)|through\(utak,\w+\))\)?")
+OF_WALLS = ["whole(squares)", "isolated(things)"]  # given, of `impossible`
 ALONG_GRID = "along(grid)"  # given: the robot's axes lie along the squares, so only the angle 0 is treated
 RIGHT_ANGLE = 90  # degrees: a quarter turn of the grid of squares is the same grid
 FIELD_ZONES = ((4, 0, 1), (8, 4, 2), (16, 8, 4))  # of the retina: reach, reach of the one within, side of fields
@@ -25,7 +29,10 @@ FIELD_OFFSETS = [  # of the retina, in order: the offset (east, north) of the so
     for east in range(-reach, reach, side)
     if not (-inner <= east < inner and -inner <= north < inner)
 ]
-ROBOT_FIELD = FIELD_OFFSETS.index((0, 0, 1))
+SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}  # the robot always fills its square
+LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
+for k, n in [(1, n) for n in range(2)] + [(2, n) for n in range(5)] + [(4, n) for n in range(17)]:
+    LEVEL_RANGES.setdefault((k, (14 * n + k * k) // (2 * k * k)), [n, n])[1] = n
 TOUCH_NAMES = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
 TOUCH_OFFSETS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # (east, north), in this order
 CORNERS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
@@ -35,13 +42,11 @@ DIRECTION_DIGITS = 18  # of cosines and sines
 DIRECTION_SCALE = 10**DIRECTION_DIGITS
 TIE_ERROR = DIRECTION_SCALE // 10**9  # so near to the middle between two squares either may be sampled (axiom 2)
 PLACE_ERROR = Fraction(1, 10**6)  # squares: so far from where its commands lead the robot may stand (axiom 4)
-NOTHING = Fraction(0)
 MAX_SWEPT_SQUARES = 10**5  # of one command; a bound on time
 MAX_EXPONENT_DIGITS = 4  # with the sign; a bound on time
 
 Spot = tuple[int, int]
-Span = tuple[Fraction, Fraction]  # least, greatest
-Vector = tuple[Fraction, Fraction]  # a vector or a point (x, y)
+Span = tuple[Fraction, Fraction]  # least and greatest; or x and y of a vector
 Zone = tuple[Span, Span]  # a range of x and a range of y, map frame, in squares
 Shown = tuple[str, str, str]  # corner, start, thing or circled; the corner or parameter; first, then or ""
 
@@ -55,22 +60,14 @@ def refuse(why: str) -> NoReturn:
     raise RefusedError(why)
 
 
-def level_range(level: int, side: int) -> tuple[int, int]:
-    """Return the least and the greatest count of occupied squares that a field shows as a gray level."""
-    counts = [n for n in range(side * side + 1) if (14 * n + side * side) // (2 * side * side) == level]
-    if not counts:
-        raise ValueError(f"a field of {side} x {side} squares never shows the gray level {level}")
-    return counts[0], counts[-1]
-
-
-def direction(angle: int) -> Vector:
+@cache
+def direction(angle: int) -> Span:
     """Return cosine and sine of whole degrees, from 0 to 90, exact to 1e-18, by their series."""
     terms = [Fraction(1)]
     for n in range(1, 30):
         terms.append(terms[-1] * PI_DECIMALS * angle / (180 * n))
-    cosine = sum((-1) ** (n // 2) * term for n, term in enumerate(terms) if n % 2 == 0)
-    sine = sum((-1) ** (n // 2) * term for n, term in enumerate(terms) if n % 2 == 1)
-    return round(cosine, DIRECTION_DIGITS), round(sine, DIRECTION_DIGITS)
+    parts = [sum((-1) ** (n // 2) * term for n, term in enumerate(terms) if n % 2 == odd) for odd in (0, 1)]
+    return round(parts[0], DIRECTION_DIGITS), round(parts[1], DIRECTION_DIGITS)
 
 
 class Sampling:
@@ -120,8 +117,9 @@ class Evidence:
         self.claims = [str(fact) for fact, _ in head["task"]["claims"]]
         steps = [row for row in rows if "result" not in row]
         self.actions, self.touches = [row["action"] for row in steps], [row["touch"] for row in steps]
-        sides = [side for _, _, side in FIELD_OFFSETS]
-        self.ranges = [[level_range(*field) for field in zip(row["retina"], sides, strict=True)] for row in steps]
+        self.ranges: dict[tuple[int, int], list[int]] = {}  # of each (step, field): least and greatest count
+        for k, f in product(range(len(steps)), SAMPLED_FIELDS):
+            self.ranges[k, f] = LEVEL_RANGES[FIELD_OFFSETS[f][2], steps[k]["retina"][f]]
         self.last = len(steps) - 1
         if [row["step"] for row in steps] != list(range(len(steps))) or {*map(len, self.touches)} != {len(TOUCH_NAMES)}:
             raise ValueError("its steps are not whole")
@@ -130,12 +128,13 @@ class Evidence:
         altered += ["disturbances"] * any("disturbed" in row for row in steps)
         self.hindrance = ", ".join(altered)  # why nothing is said of where the robot is; "" for no reason
 
-    def motion(self, step: int) -> Vector:
+    def motion(self, step: int) -> Span:
         """Return the vector, robot frame, by which the command of a step was to move a robot with empty hands."""
         action = self.actions[step]
         if action["do"] == "grasp" and self.touches[step - 1][TOUCH_NAMES.index(action["direction"])] is not None:
             refuse(f"step {step}: the robot may have grasped something; where it is then no certificate says")
-        return (Fraction(action["east"]), Fraction(action["north"])) if action["do"] == "move" else (NOTHING, NOTHING)
+        east, north = (action["east"], action["north"]) if action["do"] == "move" else (0, 0)
+        return Fraction(east), Fraction(north)
 
 
 def sum_of(one: Span, other: Span) -> Span:
@@ -160,7 +159,7 @@ def side_of(number: int) -> Span:
 
 def stretched(interval: Span, by: Fraction) -> Span:
     """Return the interval through which an interval leads that is moved."""
-    return interval[0] + min(by, NOTHING), interval[1] + max(by, NOTHING)
+    return interval[0] + min(by, Fraction()), interval[1] + max(by, Fraction())
 
 
 def touched(interval: Span) -> range:
@@ -168,17 +167,14 @@ def touched(interval: Span) -> range:
     return range(interval[0].__floor__(), interval[1].__ceil__())
 
 
-def sweep(x: Span, y: Span, vector: Vector) -> frozenset[Spot]:
+def sweep(x: Span, y: Span, vector: Span) -> frozenset[Spot]:
     """Return the squares through whose inside a point leads that starts anywhere in a box."""
     (dx, dy), columns, rows = vector, touched(stretched(x, vector[0])), touched(stretched(y, vector[1]))
     if len(columns) * len(rows) > MAX_SWEPT_SQUARES:
         refuse("a command leads further than the checker looks")
-    lane, found = [b * dx - a * dy for a, b in product(x, y)], set()
-    for i, j in product(columns, rows):
-        across = [b * dx - a * dy for a, b in product((i, i + 1), (j, j + 1))]
-        if min(across) < max(lane) and min(lane) < max(across):
-            found.add((i, j))
-    return frozenset(found)
+    lane, square = ([b * dx - a * dy for a, b in product(*sides)] for sides in ((x, y), (side_of(0), side_of(0))))
+    low, high = min(lane) - max(square), max(lane) - min(square)
+    return frozenset((i, j) for i, j in product(columns, rows) if low < j * dx - i * dy < high)
 
 
 class Course(NamedTuple):
@@ -188,7 +184,9 @@ class Course(NamedTuple):
     waking: Zone  # the point of waking
     occupied: dict[Spot, bool]  # the squares that are settled: occupied or free
     squares: tuple[Spot, ...] = ((0, 0),)  # the square of the robot, at each step
-    ways: tuple[Zone, ...] = (((NOTHING, NOTHING),) * 2,)  # from the point of waking to where it stands, at each step
+    ways: tuple[Zone, ...] = (
+        ((Fraction(), Fraction()),) * 2,
+    )  # from the point of waking to where it stands, at each step
     swept: tuple[frozenset[Spot], ...] = ()  # the squares through which each command may have led
 
     @property
@@ -216,7 +214,7 @@ class Course(NamedTuple):
                 for p, q, v, d, w in zip(place, square, vector, self.ways[-1], self.waking, strict=True):
                     at = common(stretched(p, v), side_of(q))
                     way = common(stretched(d, v), grown((at[0] - w[1], at[1] - w[0]), PLACE_ERROR))
-                    parts.append((at, way, NOTHING if v else PLACE_ERROR))
+                    parts.append((at, way, Fraction() if v else PLACE_ERROR))
                 ends.append(parts)
         for (x, dx, ex), (y, dy, ey) in ends:
             for square in product(touched(grown(x, ex)), touched(grown(y, ey))):
@@ -247,17 +245,16 @@ class Course(NamedTuple):
         weights: dict[Spot, int] = {}
         least = most = 0  # of the sum over the squares that are sampled for sure
         for step, field, multiplier in terms:
-            ends = [multiplier * count for count in episode.ranges[step][field]]
+            counts = episode.ranges.get((step, field)) if step <= self.step else None
+            ends = [multiplier * n for n in counts or refuse("a count is of no field of an impression so far")]
             least += min(ends) - max(multiplier * samples.slack[field], 0)
             most += max(ends) - min(multiplier * samples.slack[field], 0)
             for (i, j), weight in samples.weights[field].items():
                 square = self.squares[step][0] + i, self.squares[step][1] + j
                 weights[square] = weights.get(square, 0) + multiplier * weight
-        fixed = sum(weight for square, weight in weights.items() if self.occupied.get(square))
-        left = {square: weight for square, weight in weights.items() if square not in self.occupied and weight}
-        low = fixed + sum(weight for weight in left.values() if weight < 0)
-        high = fixed + sum(weight for weight in left.values() if weight > 0)
-        for square, weight in left.items():
+        low = sum(weight for square, weight in weights.items() if self.occupied.get(square, weight < 0))
+        high = sum(weight for square, weight in weights.items() if self.occupied.get(square, weight > 0))
+        for square, weight in [(at, weight) for at, weight in weights.items() if at not in self.occupied and weight]:
             if low + abs(weight) > most:  # it counts as little as it can
                 self.occupied[square] = weight < 0
             elif high - abs(weight) < least:  # as much as it can
@@ -289,20 +286,22 @@ class CertificateCheck:
     def __init__(self, episode: Evidence, certificate: Any) -> None:
         if not isinstance(certificate, dict) or set(certificate) != set(KEYS_IN_ORDER):
             refuse(f"a certificate has the keys {', '.join(KEYS_IN_ORDER)}, and no others")
-        if [certificate[key] for key in KEYS_IN_ORDER[:4]] != ["certificate", 1, "done", episode.goals]:
-            refuse("it is no certificate of version 1 that claims done, of the goals of the episode")
-        self.episode, self.texts = episode, [text for text in episode.goals if not text.startswith("prefer(")]
-        self.goals = [goal_of(text) for text in self.texts]
-        self.steps, self.meaning, self.given, self.lines = (certificate[key] for key in KEYS_IN_ORDER[4:])
+        *head, self.steps, self.meaning, self.given, self.lines = (certificate[key] for key in KEYS_IN_ORDER)
+        self.episode, self.claim = episode, head[2]
+        self.texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
+        if self.claim == "impossible":
+            self.texts = [text for text in self.texts if BARRED_GOAL.fullmatch(text)][:1]
+        if head != ["certificate", 1, self.claim, episode.goals] or self.claim not in CLAIMS or not self.texts:
+            refuse("it is no certificate of version 1, of goals of the episode that certificates show")
+        self.goals = [goal_of(text) if self.claim == "done" else ("shut_in", "", "") for text in self.texts]
         if not are_whole(self.steps, len(self.goals)) or not all(0 <= k <= self.episode.last for k in self.steps):
             refuse("it has not one step for each goal")
         ordered = [k for k, goal in zip(self.steps, self.goals, strict=True) if goal[2]]
         others = {k for k, goal in zip(self.steps, self.goals, strict=True) if not goal[2]}
         if ordered != sorted(ordered) or others - {self.episode.last}:
             refuse("its steps are not in the order of the task, or a goal does not hold at the end")
-        taken = self.check_meaning()
-        self.along_grid = self.given == [*taken, ALONG_GRID] and self.lines != []
-        if self.given != taken and not self.along_grid:
+        taken = self.check_meaning() + OF_WALLS * (self.claim == "impossible")
+        if self.given not in (taken, [*taken, ALONG_GRID]):
             refuse(f"what it is given must be {json.dumps(taken)}, and perhaps {ALONG_GRID}")
 
     def check_meaning(self) -> list[str]:
@@ -333,18 +332,18 @@ class CertificateCheck:
             refuse("its goals need no cases, and it has some")
         shown = [f"{text} at step {step}" for text, step in zip(self.texts, self.steps, strict=True)]
         means = [f"{name} is the thing felt at step {k}, touch {n}" for name, (k, n) in self.meaning.items()]
-        return f"done: {', '.join([*shown, *means])}" + (f"; given {', '.join(self.given)}" if self.given else "")
+        return f"{self.claim}: {', '.join([*shown, *means])}" + "; given " * bool(self.given) + ", ".join(self.given)
 
     def check_cases(self) -> None:
         """Refuse unless each orientation of the grid and each end of each command is shut or shows the goals."""
         if self.episode.hindrance or not isinstance(self.lines, list):
             refuse(f"nothing is said of where the robot is in an episode with {self.episode.hindrance}")
-        angle, angles, samples, shown = -1, 1 if self.along_grid else RIGHT_ANGLE, Sampling(0), 0
+        angle, angles, samples, shown = -1, 1 if ALONG_GRID in self.given else RIGHT_ANGLE, Sampling(0), 0
         left: list[dict[Spot, Course]] = []  # of each step: the ends of the command that are still to be treated
         case: Course | None = None  # the one that is treated now; None where the next line must begin one
         for number, line in enumerate(self.lines):
             word, args = (line[0], line[1:]) if isinstance(line, list) and line else ("", [])
-            if word == "count" and case and all(self.is_term(term, case) for term in args):
+            if word == "count" and case and all(are_whole(term, 3) for term in args):
                 case = None if case.settle(self.episode, samples, args) else case
             elif word == "replay" and case and not args:
                 case = case.replayed(self.episode)
@@ -354,14 +353,11 @@ class CertificateCheck:
                         refuse(f"line {number}: {text} may not hold")
                 case, shown = None, shown + 1
             elif word == "angle" and not case and not left and args == [angle + 1] and angle + 1 < angles:
-                angle, samples = angle + 1, Sampling(angle + 1)
-                case = Course(angle, (side_of(0), side_of(0)), {})
+                angle, samples, case = angle + 1, Sampling(angle + 1), Course(angle + 1, (side_of(0), side_of(0)), {})
             elif word == "end" and are_whole(args, 2) and (left if case is None else case.step < self.episode.last):
                 if case:
                     left.append(case.ends(self.episode))
-                case = left[-1].pop((args[0], args[1]), None)
-                if not case:
-                    refuse(f"line {number}: the command cannot have ended there, or that was treated before")
+                case = left[-1].pop((args[0], args[1]), None) or refuse(f"line {number}: the command cannot end there")
             else:
                 refuse(f"line {number}: it is no line that may stand here")
             while not case and left and not left[-1]:
@@ -369,45 +365,34 @@ class CertificateCheck:
         if case or left or angle != angles - 1 or not shown:
             refuse("it ends before all cases are treated, or the episode agrees with no world")
 
-    def is_term(self, term: Any, case: Course) -> bool:
-        """Return whether a term of a sum of counts names a field of an impression up to a case."""
-        is_field = are_whole(term, 3) and 0 <= term[1] < len(FIELD_OFFSETS) and term[1] != ROBOT_FIELD
-        return is_field and 0 <= term[0] <= case.step
-
     def holds(self, goal: Shown, case: Course, step: int, samples: Sampling) -> bool:
         """Return whether a goal holds at a step of a case for sure."""
         kind, name, _ = goal
         if kind == "start":
             return case.squares[step] == (0, 0) or all(abs(d) <= 1 for way in case.ways[step] for d in way)
+        if kind == "shut_in":
+            return self.is_shut_in(case, samples)
         if kind == "circled":
             return self.is_circled(name, case, step, samples)
-        around = product(*((q - 1, q, q + 1) for q in case.squares[step]))
-        return kind == "thing" or any(self.is_corner(name, case, step, samples, (i, j)) for i, j in around)
+        return kind == "thing" or self.is_corner(name, case, step, samples)
 
-    def is_corner(self, name: str, case: Course, step: int, samples: Sampling, square: Spot) -> bool:
-        """Return whether the robot is at a square that is the furthest known corner of the floor."""
-        (e, n), (cosine, sine) = CORNERS.get(name) or refuse(f"there is no corner {name}"), direction(case.angle)
+    def is_corner(self, name: str, case: Course, step: int, samples: Sampling) -> bool:
+        """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""
+        (e, n), (cosine, sine), square = CORNERS[name], direction(case.angle), case.squares[step]
         u, v = e * cosine - n * sine, e * sine + n * cosine  # the direction of the corner, map frame
-        here = case.squares[step]
+        ahead = (square[0] + 2 * (u > 0) - 1, square[1]), (square[0], square[1] + 2 * (v > 0) - 1)
 
         def reach(at: Spot) -> Fraction:
             return u * (at[0] + (u > 0)) + v * (at[1] + (v > 0))
 
-        i, j = 1 if u > 0 else -1, 1 if v > 0 else -1
-        walls = case.occupied.get((square[0] + i, square[1])) and case.occupied.get((square[0], square[1] + j))
-        if not u or not v or not walls or case.occupied.get(square, square != here):
+        is_furthest = all(reach(at) <= reach(square) for at in case.squares[: step + 1])
+        if not (u and v and is_furthest and all(map(case.occupied.get, ahead))) or case.occupied.get(square, True):
             return False
-        for axis, edge in ((0, square[0] + (u > 0)), (1, square[1] + (v > 0))):
-            place = grown(sum_of(case.waking[axis], case.ways[step][axis]), PLACE_ERROR)
-            if any(abs(edge - end) > 1 for end in common(place, side_of(here[axis]))):
-                return False
-        limit = reach(square)
-        if any(reach(at) > limit for at in case.squares[: step + 1]):
-            return False
-        for at, ranges in zip(case.squares[: step + 1], self.episode.ranges, strict=False):
-            for (_, most), weights in zip(ranges, samples.weights, strict=True):
-                if sum(w for (a, b), w in weights.items() if reach((at[0] + a, at[1] + b)) > limit) > most:
-                    return False  # not all of these are occupied: floor is known further on
+        for (k, field), (_, most) in self.episode.ranges.items():
+            (i, j), squares = case.squares[min(k, step)], samples.weights[field] if k <= step else {}
+            beyond = [weight for (a, b), weight in squares.items() if reach((i + a, j + b)) > reach(square)]
+            if sum(beyond) > most:
+                return False  # not all of these are occupied: floor is known further on
         return True
 
     def is_circled(self, name: str, case: Course, step: int, samples: Sampling) -> bool:
@@ -427,6 +412,20 @@ class CertificateCheck:
                 left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
                 winding += (left > 0 and y1 > y0) - (left < 0 and y1 < y0)
         return winding != 0
+
+    def is_shut_in(self, case: Course, samples: Sampling) -> bool:
+        """Return whether verge was felt on all sides of a rectangle of floor and things about the square of waking."""
+        felt: dict[Spot, str | None] = {}
+        for (i, j), touches in zip(case.squares, self.episode.touches, strict=True):
+            for offset, letter in zip(TOUCH_OFFSETS, touches, strict=True):
+                if under := samples.under(*offset):
+                    felt[i + under[0], j + under[1]] = letter
+        walls = {square for square, letter in felt.items() if letter == VERGE_LETTER} or {(0, 0)}
+        (w, e), (s, n) = ((min(line), max(line)) for line in zip(*walls, strict=True))
+        edge = {*product((w, e), range(s + 1, n)), *product(range(w + 1, e), (s, n))}
+        rim = {*product((w + 1, e - 1), range(s + 1, n)), *product(range(w + 1, e), (s + 1, n - 1))}
+        is_rim = all(square in felt or not case.occupied.get(square, True) for square in rim)
+        return edge <= walls <= {*edge, *product((w, e), (s, n))} and is_rim and w < 0 < e and s < 0 < n
 
 
 def verify(episode: str, certificate: str) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from utak.kb.language.source_text import source_from_bytes
-from utak.simulator.certificates.done import NoCertificateError, certificate_of, is_certificate
+from utak.simulator.certificates.search import NoCertificateError, certificate_of, is_certificate
 from utak.simulator.cli.commands.given import settings_of
 from utak.simulator.episode.episode import (
     STANDARD_OUTPUT,

@@ -14,8 +14,8 @@ from benchmarks.certificates.recorded import RecordedWalk, recorded_walk
 from benchmarks.certificates.truth import lost_truth
 from tests.tables import few
 from utak.kb.body import Command, Grasp, Move
-from utak.simulator.certificates.checker import FIELD_OFFSETS, Evidence, RefusedError, level_range, verify
-from utak.simulator.certificates.done import NoCertificateError, done_certificate
+from utak.simulator.certificates.checker import LEVEL_RANGES, SAMPLED_FIELDS, Evidence, RefusedError, verify
+from utak.simulator.certificates.search import NoCertificateError, certificate_of
 from utak.simulator.cli.main import main
 from utak.simulator.scenario.picture import read_picture
 
@@ -28,7 +28,7 @@ b..gg......b
 b..........b
 bbbbbbbbbbbb
 """
-NORTH, EAST = FIELD_OFFSETS.index((0, 1, 1)), FIELD_OFFSETS.index((1, 0, 1))
+(OWN_FIELD,) = {*range(160)} - SAMPLED_FIELDS
 Change = Callable[[dict[str, Any]], None]
 
 
@@ -56,38 +56,55 @@ def refused(walk: RecordedWalk, stated: dict[str, Any]) -> str:
     return str(caught.value)
 
 
+def found_certificate(walk: RecordedWalk, verdict: str = "done") -> str:
+    return certificate_of(walk.text.splitlines(keepends=True), verdict)
+
+
 def in_corner(tmp_path: Path) -> tuple[RecordedWalk, dict[str, Any]]:
-    """Return a robot that wakes in the corner, and the certificate that it is there, by two counts."""
-    found = walk(tmp_path, ROOM, [], "at(utak,corner(northeast))")
-    counts = [["count", [0, NORTH, 1]], ["count", [0, EAST, 1]]]
-    return found, certificate(found, [["angle", 0], *counts, ["holds"]], given=["along(grid)"])
+    """Return a robot that goes into the corner, and the certificate that it is there if it woke along the grid."""
+    found = walk(tmp_path, ROOM.replace(".U", "U."), [Move(1.0, 0.0)], "at(utak,corner(northeast))")
+    cases = json.loads(found_certificate(found))["cases"]
+    return found, certificate(found, cases[: cases.index(["angle", 1])], given=["along(grid)"])
 
 
 def test_levels_stand_for_the_counts_that_show_them() -> None:
-    assert [level_range(level, 4) for level in (0, 1, 7)] == [(0, 1), (2, 3), (15, 16)]
-    assert [level_range(level, 2) for level in (0, 2, 4, 5, 7)] == [(n, n) for n in range(5)]
-    with pytest.raises(ValueError, match="never shows"):
-        level_range(3, 2)
+    assert [LEVEL_RANGES[4, level] for level in (0, 1, 7)] == [[0, 1], [2, 3], [15, 16]]
+    assert [LEVEL_RANGES[2, level] for level in (0, 2, 4, 5, 7)] == [[n, n] for n in range(5)]
+    assert (2, 3) not in LEVEL_RANGES
 
 
-def test_two_counts_show_a_corner(tmp_path: Path) -> None:
+def test_the_cases_along_the_grid_show_a_corner(tmp_path: Path) -> None:
     found, stated = in_corner(tmp_path)
-    assert shown(found, stated) == "done: at(utak,corner(northeast)) at step 0; given along(grid)"
+    assert shown(found, stated) == "done: at(utak,corner(northeast)) at step 1; given along(grid)"
+
+
+def without(cases: list[Any], word: str) -> None:
+    """Take all lines of a kind away."""
+    cases[:] = [line for line in cases if line[0] != word]
 
 
 @pytest.mark.parametrize(
     ("change", "why"),
     [
-        (lambda c: c["cases"].pop(1), "may not hold"),  # a wall is not settled
-        (lambda c: c["cases"].pop(3), "before all cases are treated"),
-        (lambda c: c.update(given=[]), "before all cases are treated"),  # 89 orientations are left
-        (lambda c: c.update(goals=["at(utak,corner(southwest))"]), "of the goals of the episode"),
-        (lambda c: c.update(steps=[1]), "step for each goal"),
+        (lambda c: without(c["cases"], "count"), ""),
+        (lambda c: without(c["cases"], "end"), ""),
+        (lambda c: without(c["cases"], "holds"), ""),
+        (lambda c: c["cases"].pop(), "all cases are treated"),
+        (lambda c: c.update(given=[]), "all cases are treated"),  # 89 orientations are left
+        (lambda c: c.update(claim="impossible"), "that certificates show"),
+        (lambda c: c.update(goals=["at(utak,corner(southwest))"]), "of goals of the episode"),
+        (lambda c: c.update(steps=[2]), "step for each goal"),
+        (lambda c: c.update(steps=[0]), "does not hold at the end"),
         (lambda c: c.update(more=1), "no others"),
         (lambda c: c["cases"].insert(1, ["trust", "me"]), "no line that may stand here"),
-        (lambda c: c["cases"].insert(1, ["end", 0, 0]), "no line that may stand here"),
-        (lambda c: c["cases"].insert(1, ["count", [1, NORTH, 1]]), "no line that may stand here"),  # no such impression
-        (lambda c: c["cases"].insert(1, ["count", [0, NORTH, True]]), "no line that may stand here"),
+        (lambda c: c["cases"].insert(1, ["holds"]), "no line that may stand here"),
+        (lambda c: c["cases"].insert(1, ["count", [1, 0, 1]]), "no field of an impression so far"),
+        (
+            lambda c: c["cases"].insert(1, ["count", [0, OWN_FIELD, 1]]),
+            "no field of an impression so far",
+        ),  # its own square
+        (lambda c: c["cases"].insert(1, ["count", [-1, 0, 1]]), "no field of an impression so far"),
+        (lambda c: c["cases"].insert(1, ["count", [0, 0, True]]), "no line that may stand here"),
     ],
 )
 def test_what_does_not_show_it_is_refused(tmp_path: Path, change: Change, why: str) -> None:
@@ -97,9 +114,8 @@ def test_what_does_not_show_it_is_refused(tmp_path: Path, change: Change, why: s
 
 
 def test_another_corner_is_further(tmp_path: Path) -> None:
-    found = walk(tmp_path, ROOM, [], "at(utak,corner(southeast))")
-    wrong = certificate(found, in_corner(tmp_path)[1]["cases"], given=["along(grid)"])
-    assert "may not hold" in refused(found, wrong)
+    found = walk(tmp_path, ROOM.replace(".U", "U."), [Move(1.0, 0.0)], "at(utak,corner(southeast))")
+    assert "may not hold" in refused(found, certificate(found, in_corner(tmp_path)[1]["cases"], given=["along(grid)"]))
 
 
 def test_the_place_of_waking_is_shown_in_each_orientation(tmp_path: Path) -> None:
@@ -130,7 +146,7 @@ def test_the_verge_is_no_thing(tmp_path: Path) -> None:
 
 def test_a_walk_there_and_back_is_found_in_all_orientations(tmp_path: Path) -> None:
     found = walk(tmp_path, ROOM, [Move(-7.0, 0.0), Move(7.0, 0.0)], "at(utak,start)")
-    assert verify(found.text, done_certificate(found.text)) == "done: at(utak,start) at step 2"
+    assert verify(found.text, found_certificate(found)) == "done: at(utak,start) at step 2"
 
 
 def test_a_robot_that_was_stopped_has_no_certificate(tmp_path: Path) -> None:
@@ -138,14 +154,14 @@ def test_a_robot_that_was_stopped_has_no_certificate(tmp_path: Path) -> None:
     found = walk(tmp_path, room, [Move(-7.0, 0.0), Move(7.0, 0.0)], "at(utak,start)")
     assert abs(found.places[-1][0] - found.places[0][0]) > 1
     with pytest.raises(NoCertificateError):
-        done_certificate(found.text)
+        found_certificate(found)
 
 
 def test_after_a_grasp_of_something_nothing_is_said_of_places(tmp_path: Path) -> None:
     room = ROOM.replace("U", ".").replace("b..gg......b", "b..ggU.....b", 1)
     found = walk(tmp_path, room, [Grasp("west"), Move(1.0, 0.0)], "at(utak,start)")
     with pytest.raises(NoCertificateError, match="may have grasped"):
-        done_certificate(found.text)
+        found_certificate(found)
     assert Evidence(walk(tmp_path, room, [Grasp("east")], "at(utak,start)").text).motion(1) == (0, 0)
 
 
@@ -158,6 +174,29 @@ def test_in_other_circumstances_nothing_is_said_of_places(tmp_path: Path, key: s
         verify(text, json.dumps(certificate(found, [["angle", 0], ["holds"]], given=["along(grid)"])))
 
 
+CLOSED = "bbbbbbbb\nb......b\nb......b\nb..kk..b\nb......b\nb.U....b\nbbbbbbbb"
+
+
+@pytest.mark.parametrize(
+    ("room", "is_shown"),
+    [
+        (CLOSED, True),
+        (CLOSED.replace("b......b", "b.......", 1), False),  # a door
+        (CLOSED.replace("b......b", "b...b..b", 1), False),  # a stub of wall may make rooms
+        (CLOSED.replace("b......b", "b......k", 1), False),  # what fills the wall may be moved
+    ],
+)
+def test_a_room_whose_walls_were_felt_has_no_next_one(tmp_path: Path, room: str, is_shown: bool) -> None:
+    way = [(-1, 0), (0, 2), (0, 2), (2, 0), (3, 0), (0, -2), (0, -2), (-2, 0), (-2, 0)]
+    found = walk(tmp_path, room, [Move(float(e), float(n)) for e, n in way], "in(utak,room(next))")
+    if is_shown:
+        told = verify(found.text, found_certificate(found, "impossible"))
+        assert told == "impossible: in(utak,room(next)) at step 9; given whole(squares), isolated(things)"
+    else:
+        with pytest.raises(NoCertificateError):
+            found_certificate(found, "impossible")
+
+
 @pytest.mark.parametrize("goal", ["in(utak,room(next))", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"])
 def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
     found = walk(tmp_path, ROOM, [], goal)
@@ -167,7 +206,7 @@ def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
 def test_mutants_that_are_accepted_claim_the_same(tmp_path: Path) -> None:
     goals = "first(at(utak,corner(northeast)))", "then(at(utak,start))"
     found = walk(tmp_path, ROOM, [Move(-2.0, -1.0), Move(2.0, 1.0)], *goals)
-    stated = json.loads(done_certificate(found.text))
+    stated = json.loads(found_certificate(found))
     stated["cases"] = stated["cases"][: stated["cases"].index(["angle", 1])]
     stated["given"] = ["along(grid)"]
     assert shown(found, stated)

@@ -1,4 +1,4 @@
-"""The certificate of a run that is done, found by trying all that may have happened.
+"""The certificate of a verdict, found by trying all that may have happened.
 
 It is found from the impressions and commands of the episode alone, as the checker reads them. The search follows one
 orientation of the grid after the other, and one end of each command after the other, until an impression contradicts it
@@ -16,9 +16,10 @@ from typing import Any, NamedTuple
 
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
-    FIELD_OFFSETS,
+    CLAIMS,
+    OF_WALLS,
     RIGHT_ANGLE,
-    ROBOT_FIELD,
+    SAMPLED_FIELDS,
     VERGE_LETTER,
     CertificateCheck,
     Course,
@@ -61,39 +62,34 @@ def is_certificate(head: bytes) -> bool:
 
 
 def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
-    """Return the certificate of a run, as the text of its file, from the lines of its episode.
+    """Return the certificate of the verdict of a run, as the text of its file, from the lines of its episode.
 
     Raises NoCertificateError where none is found.
     """
-    if verdict != "done":
-        raise NoCertificateError(f"certificates show done, and the verdict is {verdict or 'not there yet'}")
-    return done_certificate("".join(lines))
-
-
-def done_certificate(episode_text: str) -> str:
-    """Return the certificate that the goals of an episode hold at its end; raises NoCertificateError where none is."""
-    episode = Evidence(episode_text)
+    if verdict not in CLAIMS:
+        raise NoCertificateError(f"certificates show {' and '.join(CLAIMS)}, and the verdict is {verdict or 'open'}")
+    episode = Evidence("".join(lines))
     try:
-        certificate = _likely(episode)
+        certificate = _likely(episode, verdict)
         search = _Search(episode, CertificateCheck(episode, certificate))
         if any(kind != "thing" for kind, _, _ in search.checker.goals):
-            lines = search.lines(0)
+            lines_found = search.lines(0)
             try:
-                lines += [line for angle in range(1, RIGHT_ANGLE) for line in search.lines(angle)]
+                lines_found += [line for angle in range(1, RIGHT_ANGLE) for line in search.lines(angle)]
             except (RefusedError, NoCertificateError):
                 certificate["given"].append(ALONG_GRID)
-            if ["holds"] not in lines:
+            if ["holds"] not in lines_found:
                 raise NoCertificateError("the impressions contradict all that the search follows")
-            certificate["cases"] = lines
+            certificate["cases"] = lines_found
     except RefusedError as why:
         raise NoCertificateError(str(why)) from None
     return json.dumps(certificate, separators=(",", ":")) + "\n"
 
 
-def _likely(episode: Evidence) -> dict[str, Any]:
+def _likely(episode: Evidence, claim: str) -> dict[str, Any]:
     """Return a certificate without cases whose goals hold where all went as commanded, along the grid."""
     refusal = RefusedError("the goals name nothing that was felt")
-    for certificate in _candidates(episode):
+    for certificate in _candidates(episode, claim):
         try:
             checker = CertificateCheck(episode, certificate)
             if any(kind != "thing" for kind, _, _ in checker.goals):
@@ -106,10 +102,13 @@ def _likely(episode: Evidence) -> dict[str, Any]:
     raise refusal
 
 
-def _candidates(episode: Evidence) -> Iterator[dict[str, Any]]:
+def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
     """Yield certificates without cases, for each thing that each parameter may mean."""
     texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
-    head = {"utak": "certificate", "version": 1, "claim": "done", "goals": episode.goals}
+    head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
+    if claim == "impossible":
+        yield head | {"steps": [episode.last], "meaning": {}, "given": [*OF_WALLS], "cases": []}
+        return
     goals = [goal_of(text) for text in texts]
     felt: dict[str, list[StatedLine]] = {}
     for kind, name, _ in goals:
@@ -209,8 +208,9 @@ class _Search:
         for text, goal, step in zip(self.checker.texts, self.checker.goals, self.checker.steps, strict=True):
             if not self.checker.holds(goal, case, step, self.samples):
                 raise RefusedError(f"nothing shows that {text} holds in all that may have happened")
-            for place in {case.squares[step], (0, 0)}:
-                needed |= {square for square in case.occupied if _are_near(square, place)}
+            if goal[0] == "shut_in":
+                needed |= _free(case, case.occupied)
+            needed |= {square for square in case.occupied if _are_near(square, case.squares[step])}
         return TreatedBranch([["holds"]], needed)
 
 
@@ -218,14 +218,14 @@ def settle_all(case: Course, episode: Evidence, samples: Sampling) -> tuple[list
     """Settle all squares that single fields settle; return how, and the count that contradicts the case."""
     for step in range(case.step):  # the robot saw the same squares before, and other counts of them
         if case.squares[step] == case.squares[-1]:
-            for field, ranges in enumerate(episode.ranges[step]):
-                if ranges != episode.ranges[case.step][field] and field != ROBOT_FIELD:
+            for field in sorted(SAMPLED_FIELDS):
+                if episode.ranges[step, field] != episode.ranges[case.step, field]:
                     terms = [(case.step, field, 1), (step, field, -1)]
                     if case.settle(episode, samples, terms):
                         return [], UsefulCount(["count", *map(list, terms)], frozenset(), frozenset())
     counts: list[UsefulCount] = []
     holders: dict[Spot, list[tuple[int, int]]] = {}
-    fields = [(case.step, field) for field in range(len(FIELD_OFFSETS)) if field != ROBOT_FIELD]
+    fields = [(case.step, field) for field in sorted(SAMPLED_FIELDS)]
     while fields:
         fresh: set[Spot] = set()
         for step, field in fields:
@@ -253,10 +253,9 @@ def _holders(case: Course, samples: Sampling) -> dict[Spot, list[tuple[int, int]
     """Return the fields, (step, field) each, that sample each square."""
     found: dict[Spot, list[tuple[int, int]]] = defaultdict(list)
     for step in range(case.step + 1):
-        for field in range(len(FIELD_OFFSETS)):
-            if field != ROBOT_FIELD:
-                for square in _sampled(case, samples, step, field):
-                    found[square].append((step, field))
+        for field in sorted(SAMPLED_FIELDS):
+            for square in _sampled(case, samples, step, field):
+                found[square].append((step, field))
     return found
 
 

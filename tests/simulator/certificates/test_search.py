@@ -47,7 +47,7 @@ def test_a_file_of_another_kind_is_not_overwritten(tmp_path: Path) -> None:
 
 def test_a_certificate_is_a_text_in_python(tmp_path: Path) -> None:
     run = utak.Run(EXAMPLES / "go_to_square")
-    with pytest.raises(utak.NoCertificateError, match="not there yet"):
+    with pytest.raises(utak.NoCertificateError, match="the verdict is open"):
         run.certificate()
     episode = run.finish()
     episode.save(tmp_path / "ep.jsonl")
