@@ -11,7 +11,7 @@ from functools import cache
 from itertools import product
 from typing import Any, NamedTuple, NoReturn
 
-CLAIMS = ("done", "impossible")
+VERDICTS_SHOWN = ("done", "impossible")
 KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "cases")
 SHOWN_GOAL = re.compile(
     r"(?P<order>(?:first|then)\()?(?:at\(utak,corner\((?P<corner>\w+)\)\)|(?:at|beside)\(utak,(?P<thing>\w+)\)"
@@ -291,7 +291,7 @@ class CertificateCheck:
         self.texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
         if self.claim == "impossible":
             self.texts = [text for text in self.texts if BARRED_GOAL.fullmatch(text)][:1]
-        if head != ["certificate", 1, self.claim, episode.goals] or self.claim not in CLAIMS or not self.texts:
+        if head != ["certificate", 1, self.claim, episode.goals] or self.claim not in VERDICTS_SHOWN or not self.texts:
             refuse("it is no certificate of version 1, of goals of the episode that certificates show")
         self.goals = [goal_of(text) if self.claim == "done" else ("shut_in", "", "") for text in self.texts]
         if not are_whole(self.steps, len(self.goals)) or not all(0 <= k <= self.episode.last for k in self.steps):

@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
-    CLAIMS,
     OF_WALLS,
     RIGHT_ANGLE,
     SAMPLED_FIELDS,
+    VERDICTS_SHOWN,
     VERGE_LETTER,
     CertificateCheck,
     Course,
@@ -66,8 +66,10 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
 
     Raises NoCertificateError where none is found.
     """
-    if verdict not in CLAIMS:
-        raise NoCertificateError(f"certificates show {' and '.join(CLAIMS)}, and the verdict is {verdict or 'open'}")
+    if verdict not in VERDICTS_SHOWN:
+        raise NoCertificateError(
+            f"certificates show {' and '.join(VERDICTS_SHOWN)}, and the verdict is {verdict or 'open'}"
+        )
     episode = Evidence("".join(lines))
     try:
         certificate = _likely(episode, verdict)
