@@ -70,6 +70,12 @@ def direction(angle: int) -> Span:
     return round(parts[0], DIRECTION_DIGITS), round(parts[1], DIRECTION_DIGITS)
 
 
+def turned(vector: Span | tuple[int, int], angle: int) -> Span:
+    """Return a vector of the robot frame in the map frame."""
+    (east, north), (cosine, sine) = vector, direction(angle)
+    return east * cosine - north * sine, east * sine + north * cosine
+
+
 class Sampling:
     """The squares that each field samples at one orientation: offsets from the robot's square, map frame."""
 
@@ -184,9 +190,7 @@ class Course(NamedTuple):
     waking: Zone  # the point of waking
     occupied: dict[Spot, bool]  # the squares that are settled: occupied or free
     squares: tuple[Spot, ...] = ((0, 0),)  # the square of the robot, at each step
-    ways: tuple[Zone, ...] = (
-        ((Fraction(), Fraction()),) * 2,
-    )  # from the point of waking to where it stands, at each step
+    ways: tuple[Zone, ...] = (((Fraction(), Fraction()),) * 2,)  # at each step, from the point of waking
     swept: tuple[frozenset[Spot], ...] = ()  # the squares through which each command may have led
 
     @property
@@ -196,8 +200,7 @@ class Course(NamedTuple):
 
     def ends(self, episode: Evidence) -> dict[Spot, "Course"]:
         """Return the case after the next command, for each square in which that may have ended."""
-        (east, north), (cosine, sine) = episode.motion(self.step + 1), direction(self.angle)
-        vector = east * cosine - north * sine, east * sine + north * cosine
+        vector = turned(episode.motion(self.step + 1), self.angle)
         if not any(vector):
             return {self.squares[-1]: self.after(self.squares[-1], [self.ways[-1]], frozenset())}
         sums = [sum_of(w, d) for w, d in zip(self.waking, self.ways[-1], strict=True)]
@@ -378,8 +381,7 @@ class CertificateCheck:
 
     def is_corner(self, name: str, case: Course, step: int, samples: Sampling) -> bool:
         """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""
-        (e, n), (cosine, sine), square = CORNERS[name], direction(case.angle), case.squares[step]
-        u, v = e * cosine - n * sine, e * sine + n * cosine  # the direction of the corner, map frame
+        (u, v), square = turned(CORNERS[name], case.angle), case.squares[step]  # the direction of the corner, map frame
         ahead = (square[0] + 2 * (u > 0) - 1, square[1]), (square[0], square[1] + 2 * (v > 0) - 1)
 
         def reach(at: Spot) -> Fraction:

@@ -30,6 +30,7 @@ from utak.simulator.certificates.checker import (
     claims_taken,
     goal_of,
     side_of,
+    turned,
 )
 
 MAX_CASES = 20000  # that are tried; a bound on time
@@ -78,10 +79,12 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
             lines_found = search.lines(0)
             try:
                 lines_found += [line for angle in range(1, RIGHT_ANGLE) for line in search.lines(angle)]
-            except (RefusedError, NoCertificateError):
+            except (RefusedError, NoCertificateError) as why:
+                if ["holds"] not in lines_found:
+                    raise NoCertificateError(str(why)) from None
                 certificate["given"].append(ALONG_GRID)
             if ["holds"] not in lines_found:
-                raise NoCertificateError("the impressions contradict all that the search follows")
+                raise NoCertificateError("no course of events was found that agrees with the impressions")
             certificate["cases"] = lines_found
     except RefusedError as why:
         raise NoCertificateError(str(why)) from None
@@ -89,12 +92,14 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
 
 
 def _likely(episode: Evidence, claim: str) -> dict[str, Any]:
-    """Return a certificate without cases whose goals hold where all went as commanded, along the grid."""
+    """Return a certificate without cases: of several, one whose goals hold where all went as commanded."""
     refusal = RefusedError("the goals name nothing that was felt")
-    for certificate in _candidates(episode, claim):
+    candidates = list(_candidates(episode, claim))
+    for certificate in candidates:
         try:
             checker = CertificateCheck(episode, certificate)
-            if any(kind != "thing" for kind, _, _ in checker.goals):
+            has_order = any(order for _, _, order in checker.goals)
+            if any(kind != "thing" for kind, _, _ in checker.goals) and (has_order or len(candidates) > 1):
                 certificate["steps"] = _Search(episode, checker).likely_steps()
                 CertificateCheck(episode, certificate)
         except RefusedError as why:
@@ -145,14 +150,33 @@ class _Search:
         self.cases = 0
 
     def likely_steps(self) -> list[int]:
-        """Return the steps at which the goals hold where all went as commanded, along the grid."""
-        case, place = waking_case(0), [Fraction(1, 2), Fraction(1, 2)]
-        while case.step < self.episode.last:
-            settle_all(case, self.episode, self.samples)
-            place = [p + v for p, v in zip(place, self.episode.motion(case.step + 1), strict=True)]
-            case = case.ends(self.episode)[floor(place[0]), floor(place[1])]
-        settle_all(case, self.episode, self.samples)
-        case = case.replayed(self.episode) or case
+        """Return the steps at which the goals hold where all went as commanded; raises RefusedError for none."""
+        unmet = self.checker.texts[0]
+        for angle in range(RIGHT_ANGLE):
+            self.samples = Sampling(angle)
+            case = self.likely_case(angle)
+            steps = [] if case is None else self.steps_of(case)
+            if len(steps) == len(self.checker.goals):
+                return steps
+            unmet = unmet if case is None else self.checker.texts[len(steps)]
+        raise RefusedError(f"nothing shows {unmet}")
+
+    def likely_case(self, angle: int) -> Course | None:
+        """Return the case in which all went as commanded from the middle of a square; None where it cannot be."""
+        case, place = waking_case(angle), [Fraction(1, 2), Fraction(1, 2)]
+        while settle_all(case, self.episode, self.samples)[1] is None:
+            if case.step == self.episode.last:
+                return case.replayed(self.episode)
+            motion = turned(self.episode.motion(case.step + 1), angle)
+            place = [p + v for p, v in zip(place, motion, strict=True)]
+            end = case.ends(self.episode).get((floor(place[0]), floor(place[1])))
+            if end is None:
+                return None
+            case = end
+        return None
+
+    def steps_of(self, case: Course) -> list[int]:
+        """Return the steps at which the goals hold in a case, up to the first that does not."""
         steps: list[int] = []
         ordered = [number for number, (_, _, order) in enumerate(self.checker.goals) if order]
         for number, goal in enumerate(self.checker.goals):
@@ -160,7 +184,7 @@ class _Search:
             tried = range(earliest, self.episode.last) if number in ordered[:-1] else []
             found = [k for k in (*tried, self.episode.last) if self.checker.holds(goal, case, k, self.samples)]
             if not found:
-                raise RefusedError(f"nothing shows that {self.checker.texts[number]} holds")
+                break
             steps.append(found[0])
         return steps
 

@@ -14,6 +14,7 @@ EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 SHOWN = {
     "go_to_square": "given shape(x,square)",
     "go_northeast": "at step 5",
+    "go_northeast_askew": "at step 5",
     "go_northeast_and_back": "then(at(utak,start)) at step 5",
     "go_round_square": "given shape(x,square), along(grid)",
 }
