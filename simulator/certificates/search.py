@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
+    BARRED_GOAL,
     OF_WALLS,
     RIGHT_ANGLE,
     SAMPLED_FIELDS,
@@ -72,6 +73,8 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
             f"certificates show {' and '.join(VERDICTS_SHOWN)}, and the verdict is {verdict or 'open'}"
         )
     episode = Evidence("".join(lines))
+    if verdict == "impossible" and not any(map(BARRED_GOAL.fullmatch, episode.goals)):
+        raise NoCertificateError("that a goal is impossible is shown of in(utak,room(next)) and through(utak,D) alone")
     try:
         certificate = _likely(episode, verdict)
         search = _Search(episode, CertificateCheck(episode, certificate))

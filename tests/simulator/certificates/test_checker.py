@@ -197,6 +197,14 @@ def test_a_room_whose_walls_were_felt_has_no_next_one(tmp_path: Path, room: str,
             found_certificate(found, "impossible")
 
 
+def test_of_other_goals_nothing_shows_that_they_are_impossible(tmp_path: Path) -> None:
+    found = walk(tmp_path, CLOSED, [], "at(utak,x)")
+    with pytest.raises(NoCertificateError, match="alone"):
+        found_certificate(found, "impossible")
+    stated = certificate(found, [], claim="impossible", given=["whole(squares)", "isolated(things)"])
+    assert "of goals of the episode that certificates show" in refused(found, stated)
+
+
 @pytest.mark.parametrize("goal", ["in(utak,room(next))", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"])
 def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
     found = walk(tmp_path, ROOM, [], goal)
