@@ -45,6 +45,7 @@ PYTHON = {
     "utak.mind": ["Mind", "Verdict"],
     "utak.kb.body": ["Impression", "Move", "Push", "Turn", "Grasp", "Release"],
     "utak.simulator.run.session": ["RunNotRepeatedError"],
+    "utak.simulator.certificates.search": ["NoCertificateError"],
     "utak.gym.environment": ["TabletopEnv"],
 }
 

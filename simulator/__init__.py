@@ -6,6 +6,7 @@ world       the true table: its contents, physics and the robot's senses
 scenario    a folder with a world, a task and expectations: reading and checking
 importing   worlds and tasks of other formats
 episode     the record of a run as JSON lines: writing, reading and checking
+certificates  why a verdict follows: written for a run, checked by a module that uses nothing else
 run         the robot in a world: sessions, tests and stories
 explaining  questions about a run: why facts, commands, verdicts and cells are as they are
 testing     scenarios as tests: records, JUnit, the process for pytest

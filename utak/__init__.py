@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from utak.mind import Mind as Mind, Verdict as Verdict
     from utak.run import Plan as Plan, Run as Run
     from utak.scenario import Scenario as Scenario
+    from utak.simulator.certificates.search import NoCertificateError as NoCertificateError
     from utak.simulator.run.session import RunNotRepeatedError as RunNotRepeatedError
 
 _MODULES = {
@@ -56,6 +57,7 @@ _MODULES = {
     **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
     **dict.fromkeys(("Episode", "Step"), "utak.episode"),
     "ReasonTree": "utak.explaining",
+    "NoCertificateError": "utak.simulator.certificates.search",
     "RunNotRepeatedError": "utak.simulator.run.session",
     **dict.fromkeys(("Mind", "Verdict"), "utak.mind"),
     **dict.fromkeys(("Plan", "Run"), "utak.run"),

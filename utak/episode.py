@@ -10,6 +10,7 @@ from utak.beliefs import World, world_of
 from utak.explaining import ReasonTree
 from utak.kb.body import Impression
 from utak.markup import framed, table
+from utak.simulator.certificates.search import certificate_of
 from utak.simulator.episode.episode import Episode as EpisodeRecord
 from utak.simulator.episode.episode import encode, read_episode
 from utak.simulator.episode.output_files import is_episode, write_whole
@@ -170,9 +171,28 @@ class Episode(Sequence[Step]):
         CannotOpenError
             The file cannot be written, or is of another kind.
         """
+        write_whole(path, "".join(self._lines).encode("ascii"), is_episode, "episode", force)
+
+    def certificate(self) -> str:
+        """Return why the verdict follows from what was seen, felt and commanded, as a file for `utak verify`.
+
+        Returns
+        -------
+        str
+            A JSON text (docs/certificates.md), about the file that `save` writes.
+
+        Raises
+        ------
+        NoCertificateError
+            There is no certificate: the verdict is not `done`, or nothing shows it; the message says why.
+        """
+        return certificate_of(self._lines, self.verdict)
+
+    @property
+    def _lines(self) -> list[str]:
+        """The lines of the file."""
         result = [] if self.record.result is None else [{"result": self.record.result}]
-        lines = [self.record.header, *self.record.steps, *result]
-        write_whole(path, "".join(map(encode, lines)).encode("ascii"), is_episode, "episode", force)
+        return [encode(line) for line in (self.record.header, *self.record.steps, *result)]
 
     def __len__(self) -> int:
         """Return the number of steps, that of waking included."""

@@ -167,6 +167,16 @@ class Run:
             pass
         return self.episode
 
+    def certificate(self) -> str:
+        """Return why the verdict follows, as `Episode.certificate` does; raises NoCertificateError where nothing does.
+
+        Returns
+        -------
+        str
+            A JSON text (docs/certificates.md).
+        """
+        return self.episode.certificate()
+
     def fork(
         self,
         *,

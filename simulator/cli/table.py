@@ -147,8 +147,9 @@ RUN = (
     ),
     at("the last step of --from that is repeated"),
     value("--from-kb", "FILE", "a file of rules of the repeated run; repeatable", action="append", default=[]),
+    value("--certificate", "FILE", "write why the verdict follows, for `utak verify`, where that can be shown"),
     value("--dump-asp", "DIR", DUMP),
-    flag("--force", "let --log and --html overwrite files of other kinds, and --dump-asp fill a folder"),
+    flag("--force", "let --log, --html, --certificate overwrite files of other kinds, and --dump-asp fill a folder"),
     flag("--json", "print the result as one JSON object"),
     flag(
         "--watch",
@@ -262,6 +263,10 @@ REPLAY = (
     value("--kb", "FILE", "with --html: a file of rules of the run; repeatable", action="append", default=[]),
     flag("--force", "overwrite a file that is no page or picture"),
 )
+VERIFY = (
+    value("episode", "EP.jsonl", "an episode that `utak run --log` wrote"),
+    value("certificate", "CERTIFICATE", "a certificate that `utak run --certificate` wrote, or somebody else"),
+)
 PLACE = point(MAX_POINT_COORDINATE)
 ROUTES = (
     value("map", "MAP|SCENARIO", "a .map file, or a scenario folder"),
@@ -339,6 +344,15 @@ SUBCOMMANDS = (
         "show a recorded episode step by step",
         REPLAY,
         "Show a recorded episode step by step: as text on the standard output, or in a file.",
+    ),
+    Subcommand(
+        "verify",
+        "files.verify",
+        "check the certificate of a verdict, by what was seen, felt and commanded alone",
+        VERIFY,
+        "Check that the claim of a certificate follows from the impressions and commands of an episode.",
+        "The exit code is 0 when it does and 1 when the certificate is refused. docs/certificates.md has the axioms "
+        "and the format.",
     ),
     Subcommand(
         "routes",

@@ -12,5 +12,5 @@ replay  show a recorded episode
 routes  find distinct routes on a map
 schema  print the JSON Schema of episodes and answers
 warm    compile the geometry kernels
-files   the subcommands that read and write files of scenarios: check, show, new, import
+files   the subcommands that read, write and check files: check, show, new, import, verify
 """

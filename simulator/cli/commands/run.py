@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from utak.kb.language.source_text import source_from_bytes
+from utak.simulator.certificates.search import NoCertificateError, certificate_of, is_certificate
 from utak.simulator.cli.commands.given import settings_of
 from utak.simulator.episode.episode import (
     STANDARD_OUTPUT,
@@ -19,7 +20,7 @@ from utak.simulator.episode.episode import (
     lines_to_resume,
     read_episode,
 )
-from utak.simulator.episode.output_files import check_path
+from utak.simulator.episode.output_files import check_path, write_whole
 from utak.simulator.episode.program_dump import ProgramDump
 from utak.simulator.episode.record import fact_lines
 from utak.simulator.explaining.missing_rules import rule_paths
@@ -51,14 +52,28 @@ def execute(options: argparse.Namespace) -> int:
     scenario = read_scenario(options.scenario)
     if options.html is not None:
         check_path(options.html, is_page, PAGE_KIND, options.force)
+    if options.certificate is not None:
+        check_path(options.certificate, is_certificate, "certificate", options.force)
     lines: list[EpisodeLine] = []
     with StepProgress(settings_of(options).max_steps) as progress:
         result = _run(options, scenario, _progress_printer(options.watch, progress), list(_listeners(options, lines)))
     if options.html is not None:
         rule_files = rule_paths((*options.kb, *options.from_kb))
         write_page(options.html, _recorded(lines), options.force, rule_files, Path(options.scenario).resolve().name)
+    if options.certificate is not None:
+        _write_certificate(options, result, lines)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
+
+
+def _write_certificate(options: argparse.Namespace, result: Result, lines: Sequence[EpisodeLine]) -> None:
+    """Write the certificate of the verdict; where there is none, say why."""
+    try:
+        text = certificate_of(map(encode, lines), result.verdict)
+    except NoCertificateError as why:
+        print(one_line(f"no certificate: {why}"), file=sys.stderr)
+        return
+    write_whole(options.certificate, text.encode("ascii"), is_certificate, "certificate", options.force)
 
 
 def _wrong_usage(options: argparse.Namespace) -> str:
@@ -118,11 +133,11 @@ def _refusals(line: EpisodeLine) -> None:
 
 
 def _listeners(options: argparse.Namespace, lines: list[EpisodeLine]) -> Iterator[LineListener]:
-    """Yield the functions that take each line of the episode, for --disturb, --dump-asp and --html."""
+    """Yield the functions that take each line of the episode, for --disturb, --dump-asp, --html and --certificate."""
     yield _refusals
     if options.dump_asp is not None:
         yield ProgramDump(options.dump_asp, "the run", [*options.kb, *options.from_kb], options.force).add
-    if options.html is not None:
+    if options.html is not None or options.certificate is not None:
         yield lines.append
 
 

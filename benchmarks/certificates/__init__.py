@@ -1,0 +1,8 @@
+"""Whether certificates that are accepted are true: mutants of them, and walks that often miss their goals.
+
+recorded  episodes of given commands in given worlds
+drawn     random worlds and walks
+truth     whether goals hold on the true table
+mutants   certificates changed in one place
+__main__  counts of accepted ones whose claim is false
+"""

@@ -1,0 +1,7 @@
+"""Certificates: what a verdict hands to somebody who trusts nobody (docs/certificates.md).
+
+Modules in reading order:
+
+checker  whether the claim of a certificate follows from what was seen, felt and commanded
+search   the certificate of a verdict, found by trying all that may have happened
+"""

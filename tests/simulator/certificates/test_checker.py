@@ -1,0 +1,249 @@
+"""Certificates made by hand, right and wrong, and some that the search found."""
+
+import json
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.certificates.drawn import drawn_walk
+from benchmarks.certificates.mutants import mutants
+from benchmarks.certificates.recorded import RecordedWalk, recorded_walk
+from benchmarks.certificates.truth import lost_truth
+from tests.tables import few
+from utak.kb.body import Command, Grasp, Move
+from utak.simulator.certificates.checker import LEVEL_RANGES, SAMPLED_FIELDS, Evidence, RefusedError, verify
+from utak.simulator.certificates.search import NoCertificateError, certificate_of
+from utak.simulator.cli.main import main
+from utak.simulator.scenario.picture import read_picture
+
+ROOM = """
+bbbbbbbbbbbb
+b.........Ub
+b..........b
+b..gg......b
+b..gg......b
+b..........b
+bbbbbbbbbbbb
+"""
+(OWN_FIELD,) = {*range(160)} - SAMPLED_FIELDS
+Change = Callable[[dict[str, Any]], None]
+
+
+def walk(
+    tmp_path: Path, room: str, commands: Sequence[Command], *goals: str, claims: Sequence[str] = ()
+) -> RecordedWalk:
+    path = tmp_path / "world.txt"
+    path.write_text(room.strip() + "\n")
+    return recorded_walk(read_picture(path), commands, goals, claims)
+
+
+def certificate(walk: RecordedWalk, cases: list[Any], **more: Any) -> dict[str, Any]:
+    steps = [len(walk.places) - 1] * len(walk.goals)
+    head = {"utak": "certificate", "version": 1, "claim": "done", "goals": list(walk.goals)}
+    return {**head, "steps": steps, "meaning": {}, "given": [], "cases": cases, **more}
+
+
+def shown(walk: RecordedWalk, stated: dict[str, Any]) -> str:
+    return verify(walk.text, json.dumps(stated))
+
+
+def refused(walk: RecordedWalk, stated: dict[str, Any]) -> str:
+    with pytest.raises(RefusedError) as caught:
+        shown(walk, stated)
+    return str(caught.value)
+
+
+def found_certificate(walk: RecordedWalk, verdict: str = "done") -> str:
+    return certificate_of(walk.text.splitlines(keepends=True), verdict)
+
+
+def in_corner(tmp_path: Path) -> tuple[RecordedWalk, dict[str, Any]]:
+    """Return a robot that goes into the corner, and the certificate that it is there if it woke along the grid."""
+    found = walk(tmp_path, ROOM.replace(".U", "U."), [Move(1.0, 0.0)], "at(utak,corner(northeast))")
+    cases = json.loads(found_certificate(found))["cases"]
+    return found, certificate(found, cases[: cases.index(["angle", 1])], given=["along(grid)"])
+
+
+def test_levels_stand_for_the_counts_that_show_them() -> None:
+    assert [LEVEL_RANGES[4, level] for level in (0, 1, 7)] == [[0, 1], [2, 3], [15, 16]]
+    assert [LEVEL_RANGES[2, level] for level in (0, 2, 4, 5, 7)] == [[n, n] for n in range(5)]
+    assert (2, 3) not in LEVEL_RANGES
+
+
+def test_the_cases_along_the_grid_show_a_corner(tmp_path: Path) -> None:
+    found, stated = in_corner(tmp_path)
+    assert shown(found, stated) == "done: at(utak,corner(northeast)) at step 1; given along(grid)"
+
+
+def without(cases: list[Any], word: str) -> None:
+    """Take all lines of a kind away."""
+    cases[:] = [line for line in cases if line[0] != word]
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda c: without(c["cases"], "count"), ""),
+        (lambda c: without(c["cases"], "end"), ""),
+        (lambda c: without(c["cases"], "holds"), ""),
+        (lambda c: c["cases"].pop(), "all cases are treated"),
+        (lambda c: c.update(given=[]), "all cases are treated"),  # 89 orientations are left
+        (lambda c: c.update(claim="impossible"), "that certificates show"),
+        (lambda c: c.update(goals=["at(utak,corner(southwest))"]), "of goals of the episode"),
+        (lambda c: c.update(steps=[2]), "step for each goal"),
+        (lambda c: c.update(steps=[0]), "does not hold at the end"),
+        (lambda c: c.update(more=1), "no others"),
+        (lambda c: c["cases"].insert(1, ["trust", "me"]), "no line that may stand here"),
+        (lambda c: c["cases"].insert(1, ["holds"]), "no line that may stand here"),
+        (lambda c: c["cases"].insert(1, ["count", [1, 0, 1]]), "no field of an impression so far"),
+        (
+            lambda c: c["cases"].insert(1, ["count", [0, OWN_FIELD, 1]]),
+            "no field of an impression so far",
+        ),  # its own square
+        (lambda c: c["cases"].insert(1, ["count", [-1, 0, 1]]), "no field of an impression so far"),
+        (lambda c: c["cases"].insert(1, ["count", [0, 0, True]]), "no line that may stand here"),
+    ],
+)
+def test_what_does_not_show_it_is_refused(tmp_path: Path, change: Change, why: str) -> None:
+    found, stated = in_corner(tmp_path)
+    change(stated)
+    assert why in refused(found, stated)
+
+
+def test_another_corner_is_further(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM.replace(".U", "U."), [Move(1.0, 0.0)], "at(utak,corner(southeast))")
+    assert "may not hold" in refused(found, certificate(found, in_corner(tmp_path)[1]["cases"], given=["along(grid)"]))
+
+
+def test_the_place_of_waking_is_shown_in_each_orientation(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,start)")
+    cases = [line for angle in range(90) for line in (["angle", angle], ["holds"])]
+    assert shown(found, certificate(found, cases)) == "done: at(utak,start) at step 0"
+    assert "no line that may stand here" in refused(found, certificate(found, cases[:40] + cases[42:]))
+    assert "agrees with no world" in refused(found, certificate(found, []))
+
+
+def test_a_thing_is_what_was_felt(tmp_path: Path) -> None:
+    room = ROOM.replace("U", ".").replace("b..gg......b", "b..ggU.....b", 1)
+    found = walk(tmp_path, room, [], "at(utak,x)", claims=["colour(x,g)", "shape(x,square)"])
+    stated = certificate(found, [], meaning={"x": [0, 6]}, given=["shape(x,square)"])
+    assert shown(found, stated).endswith("x is the thing felt at step 0, touch 6; given shape(x,square)")
+    assert "must be" in refused(found, stated | {"given": []})
+    assert "no thing was felt" in refused(found, stated | {"meaning": {"x": [0, 2]}})
+    assert "named by a step" in refused(found, stated | {"meaning": {"x": [1, 6]}})
+    assert "of each thing" in refused(found, stated | {"meaning": {"y": [0, 6]}})
+    red = walk(tmp_path, room, [], "at(utak,x)", claims=["colour(x,r)"])
+    assert "another colour" in refused(red, certificate(red, [], meaning={"x": [0, 6]}, given=["colour(x,r)"]))
+
+
+def test_the_verge_is_no_thing(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,x)")
+    assert "no thing was felt" in refused(found, certificate(found, [], meaning={"x": [0, 0]}))
+
+
+def test_a_walk_there_and_back_is_found_in_all_orientations(tmp_path: Path) -> None:
+    found = walk(tmp_path, ROOM, [Move(-7.0, 0.0), Move(7.0, 0.0)], "at(utak,start)")
+    assert verify(found.text, found_certificate(found)) == "done: at(utak,start) at step 2"
+
+
+def test_a_robot_that_was_stopped_has_no_certificate(tmp_path: Path) -> None:
+    room = ROOM.replace("U", ".").replace("b..gg......b", "b..gg...U..b", 1)
+    found = walk(tmp_path, room, [Move(-7.0, 0.0), Move(7.0, 0.0)], "at(utak,start)")
+    assert abs(found.places[-1][0] - found.places[0][0]) > 1
+    with pytest.raises(NoCertificateError):
+        found_certificate(found)
+
+
+def test_after_a_grasp_of_something_nothing_is_said_of_places(tmp_path: Path) -> None:
+    room = ROOM.replace("U", ".").replace("b..gg......b", "b..ggU.....b", 1)
+    found = walk(tmp_path, room, [Grasp("west"), Move(1.0, 0.0)], "at(utak,start)")
+    with pytest.raises(NoCertificateError, match="may have grasped"):
+        found_certificate(found)
+    assert Evidence(walk(tmp_path, room, [Grasp("east")], "at(utak,start)").text).motion(1) == (0, 0)
+
+
+@pytest.mark.parametrize(("key", "value"), [("forked", []), ("options", {"noise": 0.1, "kb": []})])
+def test_in_other_circumstances_nothing_is_said_of_places(tmp_path: Path, key: str, value: Any) -> None:
+    found = walk(tmp_path, ROOM, [], "at(utak,start)")
+    head, *rows = found.text.splitlines(keepends=True)
+    text = json.dumps(json.loads(head) | {key: value}) + "\n" + "".join(rows)
+    with pytest.raises(RefusedError, match="nothing is said of where the robot is"):
+        verify(text, json.dumps(certificate(found, [["angle", 0], ["holds"]], given=["along(grid)"])))
+
+
+CLOSED = "bbbbbbbb\nb......b\nb......b\nb..kk..b\nb......b\nb.U....b\nbbbbbbbb"
+
+
+@pytest.mark.parametrize(
+    ("room", "is_shown"),
+    [
+        (CLOSED, True),
+        (CLOSED.replace("b......b", "b.......", 1), False),  # a door
+        (CLOSED.replace("b......b", "b...b..b", 1), False),  # a stub of wall may make rooms
+        (CLOSED.replace("b......b", "b......k", 1), False),  # what fills the wall may be moved
+    ],
+)
+def test_a_room_whose_walls_were_felt_has_no_next_one(tmp_path: Path, room: str, is_shown: bool) -> None:
+    way = [(-1, 0), (0, 2), (0, 2), (2, 0), (3, 0), (0, -2), (0, -2), (-2, 0), (-2, 0)]
+    found = walk(tmp_path, room, [Move(float(e), float(n)) for e, n in way], "in(utak,room(next))")
+    if is_shown:
+        told = verify(found.text, found_certificate(found, "impossible"))
+        assert told == "impossible: in(utak,room(next)) at step 9; given whole(squares), isolated(things)"
+    else:
+        with pytest.raises(NoCertificateError):
+            found_certificate(found, "impossible")
+
+
+def test_of_other_goals_nothing_shows_that_they_are_impossible(tmp_path: Path) -> None:
+    found = walk(tmp_path, CLOSED, [], "at(utak,x)")
+    with pytest.raises(NoCertificateError, match="alone"):
+        found_certificate(found, "impossible")
+    stated = certificate(found, [], claim="impossible", given=["whole(squares)", "isolated(things)"])
+    assert "of goals of the episode that certificates show" in refused(found, stated)
+
+
+@pytest.mark.parametrize("goal", ["in(utak,room(next))", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"])
+def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
+    found = walk(tmp_path, ROOM, [], goal)
+    assert "certificates show nothing of" in refused(found, certificate(found, []))
+
+
+def test_mutants_that_are_accepted_claim_the_same(tmp_path: Path) -> None:
+    goals = "first(at(utak,corner(northeast)))", "then(at(utak,start))"
+    found = walk(tmp_path, ROOM, [Move(-2.0, -1.0), Move(2.0, 1.0)], *goals)
+    stated = json.loads(found_certificate(found))
+    stated["cases"] = stated["cases"][: stated["cases"].index(["angle", 1])]
+    stated["given"] = ["along(grid)"]
+    assert shown(found, stated)
+    accepted = 0
+    for mutant in mutants(stated, 200, seed=1):
+        with suppress(RefusedError):
+            shown(found, mutant)
+            accepted += 1
+            assert (mutant["steps"], mutant["given"]) == (stated["steps"], stated["given"])
+    assert 0 < accepted < 60  # such as a line told twice
+
+
+@pytest.mark.parametrize("seed", few(range(30), 6))
+def test_the_rules_allow_what_happened(seed: int) -> None:
+    assert lost_truth(drawn_walk(seed)) == ""
+
+
+def test_the_command_says_what_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found, stated = in_corner(tmp_path)
+    episode, good, bad = tmp_path / "ep.jsonl", tmp_path / "good.json", tmp_path / "bad.json"
+    episode.write_text(found.text)
+    good.write_text(json.dumps(stated))
+    bad.write_text(json.dumps(stated | {"steps": []}))
+    assert main(["verify", str(episode), str(good)]) == 0
+    assert capsys.readouterr().out.startswith("accepted: done: at(utak,corner(northeast))")
+    assert main(["verify", str(episode), str(bad)]) == 1
+    assert capsys.readouterr().out.startswith("refused: ")
+    assert main(["verify", str(good), str(good)]) == 65
+    assert "good.json" in capsys.readouterr().err
+    good.write_text('{"utak": 1, "utak": 1e99999}')
+    assert main(["verify", str(episode), str(good)]) == 65
+    assert main(["verify", str(episode), str(tmp_path / "none")]) == 66
