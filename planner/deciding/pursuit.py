@@ -26,7 +26,7 @@ from utak.planner.navigation.walks import (
     WALK_PREDICATES,
     NoWalk,
     PlannedRoute,
-    Walk,
+    WalkChoice,
     WalkRules,
     Walks,
     choose_walk,
@@ -150,25 +150,25 @@ class Pursuer:
         steps = towards(subgoal.kind, end_of(route, model), model)
         return Decision(move, f"{subgoal.what}; {stage}", steps=steps, question=question)
 
-    def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> Walk | None:
+    def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> WalkChoice | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""
         if _speaks_of_links(situation):  # which the rest of a route does not name
             return None
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         if rest is None or not situation.shut(ROBOT):
-            return None if rest is None else Walk(rest, situation.question)
+            return None if rest is None else WalkChoice(rest, situation.question)
         return self.choose_route([rest], situation)
 
     def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
         """Remember the present route."""
         self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
-    def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> Walk | None:
+    def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> WalkChoice | None:
         """Return which of some routes is chosen; None when all are forbidden."""
         walk = self._choose(walks_along(offered), situation) if offered else None
         return None if isinstance(walk, NoWalk) else walk
 
-    def _choose(self, walks: Walks, situation: Situation) -> Walk | NoWalk:
+    def _choose(self, walks: Walks, situation: Situation) -> WalkChoice | NoWalk:
         """Return the walk that is chosen."""
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.shut(ROBOT))

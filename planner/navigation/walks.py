@@ -63,7 +63,7 @@ class NoWalk(NamedTuple):
     rules: tuple[str, ...] = ()  # the rules of users because of which, as `rules.lp:3`; () where doors are why
 
 
-class Walk(NamedTuple):
+class WalkChoice(NamedTuple):
     """The walk that was chosen."""
 
     route: PlannedRoute
@@ -135,7 +135,7 @@ def choose_walk(
     doors: Sequence[Door],
     rules: WalkRules,
     question: Question,
-) -> Walk | NoWalk:
+) -> WalkChoice | NoWalk:
     """Choose a walk, by planner/asp/deciding."""
     model, first = cost_maps.model, len(question.about)
     facts = [f"begins({walks.ends[0]})", f"ends({walks.ends[1]})"]
@@ -175,7 +175,7 @@ def choose_walk(
         names.append(name)
     way = tuple(names)
     route = walks.routes[walks.ways.index(way)] if way in walks.ways else walks.tighten(way)
-    return Walk(route, given)
+    return WalkChoice(route, given)
 
 
 def _link_facts(link: Link, model: WorldModel, doors: Sequence[Door]) -> Iterator[str]:

@@ -13,7 +13,7 @@ import utak
 from tests.kb.drawings import known_model
 from utak.geometry import Screen
 from utak.planner.navigation.network import network
-from utak.planner.navigation.walks import Walk, WalkRules, choose_walk, find_walks
+from utak.planner.navigation.walks import WalkChoice, WalkRules, choose_walk, find_walks
 from utak.planner.question import Question
 from utak.planner.screen.projection import CostMaps
 
@@ -100,7 +100,7 @@ def chosen(files: tuple[Path, ...] = (), far: int = 17, floor: Sequence[str] = P
     goal = np.array([row * model.labels.shape[1] + column])
     rules, walks = WalkRules(ruled=bool(files)), find_walks(cost_maps, 0, goal, "skeleton")
     found = choose_walk(walks, cost_maps, frozenset(), (), rules, Question(files))
-    assert isinstance(found, Walk)
+    assert isinstance(found, WalkChoice)
     walk = found.route
     assert walk.squares[0] == cost_maps.here
     assert walk.squares[-1] == (column, row)

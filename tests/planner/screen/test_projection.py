@@ -18,7 +18,7 @@ from utak.kb.world.model import WorldModel
 from utak.kb.world.rooms import NO_ROOMS
 from utak.planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from utak.planner.navigation.subgoals import Chosen, NoSubgoal, Subgoal, choose
-from utak.planner.navigation.walks import Walk, WalkRules, choose_walk, find_walks, walks_along
+from utak.planner.navigation.walks import WalkChoice, WalkRules, choose_walk, find_walks, walks_along
 from utak.planner.question import Question
 from utak.planner.screen.moves import (
     CARRYING_PACE,
@@ -154,10 +154,10 @@ def test_routes_are_free_connected_and_distinct() -> None:
         assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
     assert found[0].length <= found[1].length
     chosen = choose_walk(walks_along(found), cost_maps, frozenset(), (), WalkRules(), Question())
-    assert isinstance(chosen, Walk) and chosen.route == found[0]
+    assert isinstance(chosen, WalkChoice) and chosen.route == found[0]
     before = frozenset(found[1].squares)
     sticky = choose_walk(walks_along(found[:2]), cost_maps, before, (), WalkRules(), Question())
-    assert isinstance(sticky, Walk)
+    assert isinstance(sticky, WalkChoice)
     assert sticky.route == (found[1] if found[1].length - found[0].length < 2 else found[0])
 
 
