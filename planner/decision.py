@@ -53,6 +53,8 @@ class Decision:
     question: Question | None = None
     # What proves the verdict `impossible`, in words, a clause each; that verdict is never given without
     proof: tuple[str, ...] = ()
+    # What is proved of these (parameter, node) pairs together, while parameters may mean something else; else nothing
+    refuses: frozenset[tuple[str, str]] = frozenset()
 
     def __post_init__(self) -> None:
         """Refuse a verdict that nothing proves."""
@@ -75,9 +77,11 @@ def nothing_to_do(why: str) -> Decision:
     return Decision(None, why)
 
 
-def impossible(why: str, *proof: str, unless: str | None = "") -> Decision:
+def impossible(
+    why: str, *proof: str, unless: str | None = "", refuses: frozenset[tuple[str, str]] = frozenset()
+) -> Decision:
     """Return the verdict `impossible`."""
-    return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless, proof=proof)
+    return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless, proof=proof, refuses=refuses)
 
 
 def done(why: str) -> Decision:

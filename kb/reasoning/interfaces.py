@@ -62,7 +62,7 @@ NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the w
 SUBGOAL_KINDS = ("attain", "inspect", "explore", "pass", "settle", "feel")
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
 # What reconciliation.lp says of a parameter and a node.
-MATCHES = ["bound_before", "planned", "given_up", "refused", "as_well", "bind", "doubtful", "unmovable", "measurable"]
+MATCHES = ["bound_before", "planned", "given_up", "denied", "as_well", "bind", "doubtful", "unmovable", "measurable"]
 CLAIMED_RELATIONS = ("in", "beside", "joins")  # what claims relate two parameters by
 CHANCES_OF = ("may_be", "joined", "hidden", "loc")  # what chances.lp states of three arguments
 PLACE_CASE = word_argument("case", ("likely", "other", "open", "closed", "door", "verge"))  # where a thing may be
@@ -247,6 +247,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (CANDIDATE_ARGUMENT,) for name in ("fixed", "moved")},
         ("may_have", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
         ("enough", 2): (PARAMETER_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("refused", 3): (NUMBER_ARGUMENT._replace(name="refusal"), PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("contradicted", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
         ("near_miss", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, CLAIM_ARGUMENT),
         **{(name, 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT) for name in MATCHES},

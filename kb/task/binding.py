@@ -50,7 +50,7 @@ def reconcile(
     planned: Mapping[str, str] = NO_MEANINGS,
     kept: Iterable[str] = (),
     given_up: Iterable[tuple[str, str]] = (),
-    refused: Iterable[tuple[str, str]] = (),
+    refused: Iterable[Iterable[tuple[str, str]]] = (),
     world: Iterable[str] = (),
     places: Iterable[str] = (),
 ) -> Reconciliation:
@@ -62,7 +62,8 @@ def reconcile(
     facts += [f"planned({x},{node})" for x, node in sorted(planned.items())]
     facts += [f"kept({x})" for x in sorted(kept)]
     facts += [f"given_up({x},{node})" for x, node in sorted(given_up)]
-    facts += [*(f"refused({x},{node})" for x, node in sorted(refused)), *world]
+    facts += [f"refused({n},{x},{node})" for n, pairs in enumerate(refused, 1) for x, node in sorted(pairs)]
+    facts += world
     reached = rules_reach(RECONCILIATION.stem, rules)
     if reached:  # what they state of a node counts in place of what was seen of it
         facts += [f"seen{fact[len('has') :]}" for fact in facts if fact.startswith("has(")]

@@ -77,9 +77,10 @@ class Activities:
         self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
         self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
-        # The goal that the newest command pursues by itself, with each goal that held then.
-        self._held: frozenset[tuple[Fact, Fact]] = frozenset()
-        self._undid: set[tuple[Fact, Fact]] = set()  # goals that were pursued by themselves, with those that this undid
+        # The goal that the newest command pursues by itself, with each goal that held then, and what they mean.
+        self._held: frozenset[tuple[Fact, Fact, frozenset[str]]] = frozenset()
+        # Goals that were pursued by themselves, with those that this undid, and what they meant.
+        self._undid: set[tuple[Fact, Fact, frozenset[str]]] = set()
 
     def holds(self, situation: Situation) -> Callable[[Fact], bool]:
         """Return the function that tells whether a goal for an object holds in a situation."""
@@ -98,7 +99,7 @@ class Activities:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
         self._own.note(turn)
         holds = self.holds(turn.situation)
-        self._undid |= {(pursued, goal) for pursued, goal in self._held if not holds(goal)}
+        self._undid |= {undone for undone in self._held if not holds(undone[1])}
         about = tuple(f"{name}: {goal}" for name, goal in turn.goals.items())
         agenda = Agenda(Question(turn.situation.rules, tuple(self._facts(turn)), about))
         last = proved = nothing_to_do("all goals hold")
@@ -147,7 +148,8 @@ class Activities:
         """Note which goal an activity pursues by itself, and which hold meanwhile."""
         holds, goals = self.holds(turn.situation), turn.goals.items()
         pursued = [goal for name, goal in goals if activity == Activity("pursue", name)]
-        self._held = frozenset((one, goal) for one in pursued for _, goal in goals if holds(goal))
+        kept = [(one, goal) for one in pursued for _, goal in goals if holds(goal)]
+        self._held = frozenset((*pair, turn.situation.named_by(pair)) for pair in kept)
 
     def _note_step(self, activity: Activity, decision: Decision, turn: StageTurn) -> None:
         """Note as what step of a plan an activity is done."""
@@ -198,7 +200,8 @@ class Activities:
         yield from (f"stage_goal({name},{number})" for number, name in enumerate(turn.goals, 1))
         yield from _unknown(turn)
         names = {goal: name for name, goal in turn.goals.items()}
-        pairs = [(names[one], names[other]) for one, other in self._undid if {one, other} <= names.keys()]
+        undid = [(a, b) for a, b, meant in self._undid if meant == turn.situation.named_by((a, b))]
+        pairs = [(names[one], names[other]) for one, other in undid if {one, other} <= names.keys()]
         yield from (f"undid({one},{other})" for one, other in sorted(pairs))
         yield from (f"begun({name})" for name, (is_begun, _) in self._resumed.items() if is_begun(turn.situation))
         if not turn.stage.goals and self._doubt_of_done(turn.situation):

@@ -66,7 +66,8 @@ class Decider:
         self._activities = Activities(task, pull)
         self._intention = self._activities.errands.intention
         self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
-        self._refused: frozenset[tuple[str, str]] = frozenset()  # those that users' rules leave to no plan
+        # By parameters with nodes that they do not all mean at once in any plan: because of what, in words
+        self._refused: dict[frozenset[tuple[str, str]], str] = {}
         self._unmoved: frozenset[str] = frozenset()  # parameters of things that cannot be moved, and need not be
         self._turned: dict[Stage, Decision] = {}  # the verdicts of stages of which the other of two things is moved
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
@@ -129,8 +130,7 @@ class Decider:
                 self.bound = {**self.bound, **meant}  # the plan chose what parameters mean
                 self._reconcile(cost_maps)
             if decision.verdict not in (None, TaskVerdict.DONE):
-                if refused := self._intention.refused_meanings(stage, situation) - self._refused:
-                    self._refused |= refused
+                if self._refused_meaning(decision, stage, situation):
                     return self._decided(model, track)  # the next thing that matches is meant, or looked for
                 if self._gave_up_meaning(stage, situation):
                     return self._decided(model, track)  # the same is tried with another thing that is meant as well
@@ -156,7 +156,8 @@ class Decider:
         if decision.verdict in PROOFS and first.verdict != TaskVerdict.IMPOSSIBLE:
             why = f"{first.why}; the other way round, {decision.why}"
             return replace(decision, why=why, verdict=first.verdict)  # it is not proved for both
-        return decision
+        refuses = first.refuses | decision.refuses if first.refuses and decision.refuses else frozenset()
+        return replace(decision, refuses=refuses)
 
     def _whole(self, stage: Stage, turn: StageTurn) -> Decision:
         """Return what is decided for a stage; for all of its goals where those that come first hold."""
@@ -212,6 +213,20 @@ class Decider:
         with record_decisions():  # a question about the verdict, not a decision
             return other._decided(model, track)
 
+    def _refused_meaning(self, decision: Decision, stage: Stage, situation: Situation) -> bool:
+        """Note where a verdict or users' rules leave no plan with what parameters mean; return whether that is new."""
+        by_rules = self._intention.refused_meanings(stage, situation)
+        proved = decision.refuses if decision.verdict == TaskVerdict.IMPOSSIBLE else frozenset()
+        refused = by_rules or proved
+        if not refused or refused in self._refused:
+            return False
+        self._refused[refused] = "users' rules leave no plan" if by_rules else decision.why
+        self._turned.pop(stage, None)
+        named = {str(term) for before in self.stages[: self.attained] for goal in before.goals for term in goal.args}
+        if any(parameter in named for parameter, _ in refused):
+            self.attained = 0  # by what is meant no longer
+        return True
+
     def _gave_up_meaning(self, stage: Stage, situation: Situation) -> bool:
         """Note that a stage cannot be attained with what one parameter means, where it may mean something else."""
         for parameter in (str(goal.args[0]) for goal in stage.carried):
@@ -227,7 +242,8 @@ class Decider:
         parameters = dict.fromkeys(str(goal.args[0]) for goal in stage.carried)
         given_up = sorted(self._given_up)
         tried = [(x, [n for p, n in given_up if p == x and n != self.bound.get(x)]) for x in parameters]
-        named = [f"users' rules leave no plan in which {x} means {n}" for x, n in sorted(self._refused)]
+        means = {refused: " and ".join(f"{x} means {n}" for x, n in sorted(refused)) for refused in self._refused}
+        named = [f"{why} where {means[refused]}" for refused, why in self._refused.items()]
         words = (f"{x} may be {' or '.join(names)} as well, and that was no better" for x, names in tried if names)
         return "; ".join([*named, *words])
 

@@ -50,23 +50,33 @@ def conflict(stage: Stage, situation: Situation, place: PlaceFunction, origin: O
         regions = {str(goal): end.polygon for goal in goals for end in _where_task_says(goal, lands[str(goal)])}
         length = 2 * float(shapely.minimum_bounding_radius(shape))
         if far := too_far_reason(goals, situation, length, regions):
-            return impossible(f"{stage} cannot be attained: {far}", far, unless=None)
+            why = f"{stage} cannot be attained: {far}"
+            return impossible(why, far, unless=None, refuses=_meant(goals, situation))
         if any(corner_may_move(goal, situation) for goal in goals):
             continue
-        kept = {}  # by goal beside a thing: the goal of that thing, in words
+        kept = dict[Fact, list[Fact]]()  # by goal beside a thing: the goals of that thing
         for goal in goals:
             for own, other, end in _of_thing_beside(goal, stage, situation, place, origin):
-                kept[goal] = str(own)
+                kept.setdefault(goal, []).append(own)
                 lands[str(goal)] = beside_what_is_kept(lands[str(goal)], end, other, length)
         found = conflicting_goals(list(lands.values()), shape)
         if found is not None:
             one, other = (goals[number] for number in found)
-            besides = dict.fromkeys(kept[goal] for goal in (one, other) if goal in kept)
-            holds = f" where {' and '.join(besides)} holds" if besides else ""
+            besides = tuple(dict.fromkeys(own for goal in (one, other) for own in kept.get(goal, ())))
+            holds = f" where {' and '.join(map(str, besides))} holds" if besides else ""
             why = f"{one} and {other} cannot hold at once{holds}: their places are too far apart"
             said = {str(one), str(other)} <= regions.keys() or is_apart_from_start((one, other), began, situation)
-            return impossible(why, f"no place lies in both {one} and {other}", unless=None if said else "")
+            proof, refuses = f"no place lies in both {one} and {other}", _meant((one, other, *besides), situation)
+            return impossible(why, proof, unless=None if said else "", refuses=refuses)
     return nothing_to_do("no two goals are known to contradict each other")
+
+
+def _meant(goals: Sequence[Fact], situation: Situation) -> frozenset[tuple[str, str]]:
+    """Return the (parameter, node) pairs on which it rests that goals cannot hold at once; none for given poses."""
+    if all(goal.name in FIXED_GOALS for goal in goals):
+        return frozenset()
+    words = {str(term) for goal in goals for term in goal.args}
+    return frozenset((x, name) for x, name in situation.binding.items() if x in words)
 
 
 def _of_thing_beside(

@@ -150,6 +150,27 @@ def test_what_shall_be_beside_a_thing_is_where_that_shall_be() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize(
+    ("second", "verdict"),
+    [("(25 17, 28 17, 28 20, 25 20, 25 17)", "done"), ("(4 16, 7 16, 7 19, 4 19, 4 16)", "impossible")],
+)
+def test_goals_at_odds_for_one_thing_are_attained_with_another_one(second: str, verdict: str) -> None:
+    """Not seen yet when the first one fails, and after that was moved; else all is seen before a verdict."""
+    inside = "(2 2, 20 2, 20 8, 22 8, 22 2, 40 2, 40 22, 22 22, 22 13, 20 13, 20 22, 2 22, 2 2)"
+    scenario = utak.Scenario.from_text(
+        world=f"""table(42, 24). verge("POLYGON ((0 0, 0 24, 42 24, 42 0, 0 0), {inside})").
+        object(a, c, "POLYGON ((13 14, 16 14, 16 17, 13 17, 13 14))").
+        object(b, d, "POLYGON ({second})"). utak("POINT (8.5 10.5)", 0).""",
+        start="object(x). shape(x, square).",
+        goal="at(x, start). in(x, room(next)).",
+    )
+    episode = utak.Run(scenario, max_steps=150).finish()
+    assert episode.verdict == verdict
+    refused = "at(x,start) and in(x,room(next)) cannot hold at once: their places are too far apart where x means"
+    assert episode.reason.count(refused) == (2 if verdict == "impossible" else 0)
+
+
+@pytest.mark.long
 def test_a_robot_does_not_go_to_and_fro_between_goals_that_contradict_each_other() -> None:
     """A thing beside one that is kept where the robot woke is not in the next room, and that is told in the end."""
     inside = "(2 2, 22 2, 22 9, 24 9, 24 2, 44 2, 44 22, 24 22, 24 15, 22 15, 22 22, 2 22, 2 2)"
