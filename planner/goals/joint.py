@@ -50,8 +50,8 @@ def conflict(stage: Stage, situation: Situation, place: PlaceFunction, origin: O
         regions = {str(goal): end.polygon for goal in goals for end in _where_task_says(goal, lands[str(goal)])}
         length = 2 * float(shapely.minimum_bounding_radius(shape))
         if far := too_far_reason(goals, situation, length, regions):
-            why = f"{stage} cannot be attained: {far}"
-            return impossible(why, far, unless=None, refuses=_meant(goals, situation))
+            # Only a longer thing than what is meant would reach both; none is looked for.
+            return impossible(f"{stage} cannot be attained: {far}", far, unless=None)
         if any(corner_may_move(goal, situation) for goal in goals):
             continue
         kept = dict[Fact, list[Fact]]()  # by goal beside a thing: the goals of that thing
