@@ -9,10 +9,10 @@ from benchmarks.timing.explaining import decisions, in_words, main
 
 SOLVED = [
     ["interpretation", ["region(a,zero,100)"], ["kind(a,floor,100)"], []],
-    ["aims", ["aim(1,explore,30)", "aim(2,explore,40)"], ["choose(1)"], []],
-    ["aims", [0, 1]],
+    ["deciding", ["aim(1,explore,30)", "aim(2,explore,40)"], ["choose(1)", "do(errand)"], []],
+    ["deciding", [0, 1]],
     ["rooms", [], []],
-    ["aims", ["chance(1,5)"], None, []],
+    ["deciding", ["chance(1,5)"], None, []],
 ]
 
 
@@ -24,14 +24,14 @@ def episode(tmp_path: Path) -> Path:
 
 
 def test_decisions_with_an_answer_are_read(tmp_path: Path) -> None:
-    assert [name for name, _, _ in decisions(episode(tmp_path))] == ["interpretation", "aims"]
+    assert [name for name, _, _ in decisions(episode(tmp_path))] == ["interpretation", "deciding"]
 
 
 def test_each_encoding_has_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(episode(tmp_path)), "--absences", "1"]) == 0
     rows = {line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines()[1:]}
-    assert rows.keys() == {"interpretation", "aims"}
-    assert rows["aims"][1] == "1" and rows["aims"][-1] != "-" and rows["interpretation"][-1] == "-"
+    assert rows.keys() == {"interpretation", "deciding"}
+    assert rows["deciding"][1] == "1" and rows["deciding"][-1] != "-" and rows["interpretation"][-1] == "-"
 
 
 def test_times_in_words() -> None:
