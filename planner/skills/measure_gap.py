@@ -19,9 +19,7 @@ from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.world.model import WorldModel
 
 STEP_BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
-BEHIND_LINE = (
-    0.75  # squares behind the line at which the wall may begin, to which the robot is meant to walk; a convention
-)
+BEHIND_LINE = 0.75  # squares beyond the line at which the wall may begin, to which the robot means to walk; convention
 OFF_MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
 
 
@@ -57,9 +55,8 @@ class GapMeasurer:
 
     def __init__(self) -> None:
         """Make one that measured nothing."""
-        self._exact: dict[
-            tuple[Square, int], bool
-        ] = {}  # by the last square and the side: whether the wall begins there
+        # By the last square of a row and the side: whether the wall begins there
+        self._exact: dict[tuple[Square, int], bool] = {}
         self._is_anew = False  # whether the map was begun anew since
         self._walk: _Walk | None = None  # the newest walk of these
 
@@ -74,9 +71,9 @@ class GapMeasurer:
         gaps = dict[int, PassageRow]()  # by the place of the row along the passage, as far as its walls are in line
         begins = {math.floor(side[1 - axis] + off) for side in passage.sides for off in (0.0, -1.0)}
         for begin, way in product(sorted(begins), (1, -1)):
-            for across in count(begin, way):
+            for across in count(begin if way == 1 else begin - 1, way):
                 line = [(across, along) if axis else (along, across) for along in range(int(low) - 1, int(high) + 1)]
-                if across in gaps or not _is_from_wall_to_wall(line, model):
+                if not _is_from_wall_to_wall(line, model):
                     break
                 gaps[across] = PassageRow(tuple((x + model.view.west, y + model.view.south) for x, y in line[1:-1]))
         return min(gaps.values(), key=lambda gap: self.is_exact(gap) is not True, default=None)
@@ -87,7 +84,7 @@ class GapMeasurer:
         return False if False in sides else None if None in sides else True
 
     def end_of_walk(self, gap: PassageRow, looks: int, model: WorldModel) -> XY | None:
-        """Return where to the robot shall walk from within a gap, map frame; None while it is not there."""
+        """Return where the robot shall walk to from within a gap, map frame; None while it is not there."""
         # looks : how many there were.
         (x, y), walk = model.place, self._walk
         if walk is not None:  # it stands against the wall now
@@ -111,9 +108,8 @@ class GapMeasurer:
             return
         sure = walk.looks + 1 == looks and model.view.sure and not (model.lost or model.contradicted)
         beyond = walk.square[0] + walk.step[0], walk.square[1] + walk.step[1]
-        self._exact[walk.square, walk.side] = (
-            sure and _feels_from(walk.square, model) and not _feels_from(beyond, model)
-        )
+        inside = _feels_from(walk.square, model) and not _feels_from(beyond, model)
+        self._exact[walk.square, walk.side] = sure and inside
         self._walk = None
 
 
