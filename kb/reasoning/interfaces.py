@@ -55,9 +55,6 @@ OPEN_KIND_ARGUMENT = word_argument("kind of open fact", ("stated", "gone", "wall
 NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT, REFUTATION_ARGUMENT, TIME_ARGUMENT = (
     NUMBER_ARGUMENT._replace(name=name) for name in ("neck", "convex corner", "refutation", "time")
 )
-WALKED_ARGUMENT = ArgumentType(  # the number of a subgoal, or a link
-    "subgoal or link", lambda term: NUMBER_ARGUMENT.check(term) and LINK_ARGUMENT.check(term)
-)
 NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 SUBGOAL_KINDS = ("attain", "inspect", "explore", "pass", "settle", "feel")
 PROPERTIES = ("shape", "colour", "size", "width", "in", "at", "against")  # what claims are about
@@ -321,7 +318,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
         ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
         **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "choose", "walked")},
-        ("in_room", 2): (WALKED_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("goes_to", 2): (NUMBER_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("in_room", 2): (LINK_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("point", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("beside", 2): (NUMBER_ARGUMENT, NODE_ARGUMENT),
         ("aim_price", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),

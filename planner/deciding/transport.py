@@ -261,8 +261,7 @@ class Transporter:
         ends, near = must_reach or land.ends, refused.neck()
         instead = self._measure_refused(node, ends, turn) if ends else None
         if instead is None and ends:
-            refused, instead = measure_gaps(self._gaps, refused, node, ends, turn)
-        instead = instead or self._try_passage(refused, node, ends, turn)
+            refused, instead = measure_gaps(self._gaps, refused, node, ends, turn, self._try_passage)
         return instead or replace(decision, unless=refused.unless(), near=near)
 
     def _try_passage(

@@ -3,7 +3,7 @@
 A passage may be wider than it seems: the robot walks against its sides.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import cos
 
 import numpy as np
@@ -70,14 +70,26 @@ class Trials:
 
 
 def measure_gaps(
-    gaps: GapMeasurer, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn
+    gaps: GapMeasurer,
+    refused: Infeasibility,
+    node: Node,
+    ends: Mapping[str, End],
+    turn: StageTurn,
+    try_passage: Callable[[Infeasibility, Node, Mapping[str, End], StageTurn], Decision | None],
 ) -> tuple[Infeasibility, Decision | None]:
-    """Return a refusal that counts with passages measured too narrow, and the next command to measure another."""
+    """Return a refusal that counts with passages measured too narrow, and the next command to try or measure one."""
+    # An object is pushed against a passage before that is measured: in the squares of a wall the robot's place is less
+    # sure, and then pushes by parts of a square are.
     situation, least = turn.situation, least_gap(least_outline(node))
     model = situation.model
     gaps.note(len(turn.track), model)
     shut = np.zeros_like(model.space)
-    while refused.unless() and (gap := gaps.gap_of(refused.passage, model)) and gap.width / cos(model.spread) < least:
+    while refused.unless():
+        if (trial := try_passage(refused, node, ends, turn)) is not None:
+            return refused, trial
+        gap = gaps.gap_of(refused.passage, model)
+        if gap is None or gap.width / cos(model.spread) >= least:
+            break
         exact = gaps.is_exact(gap)
         if exact is None:
             return refused, _measure(gap, gaps, node, turn)

@@ -13,7 +13,7 @@ from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.subgoal_kind import SubgoalKind
 
 TENTHS_PER_SQUARE = 10  # subgoals have lengths and costs in tenths of squares
-PLACE_PREDICATES = (("point", 3), ("in_room", 2), ("beside", 2))  # where subgoals lead: users' rules alone ask for that
+PLACE_PREDICATES = (("point", 3), ("goes_to", 2), ("beside", 2))  # where subgoals lead: users' rules alone ask for that
 
 
 class Subgoal(NamedTuple):
@@ -80,6 +80,6 @@ def _place_facts(number: int, place: Square, model: WorldModel, rooms: Rooms) ->
     east, north = model.place_to_utak(column + 0.5, row + 0.5)
     yield f"point({number},{hundredths(east)},{hundredths(north)})"
     room = int(rooms.labels[row, column])
-    yield from [f"in_room({number},r{room})"] * (room > 0)
+    yield from [f"goes_to({number},r{room})"] * (room > 0)
     near = np.s_[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
     yield from (f"beside({number},{node.name})" for node in model.objects if model.mask(node.patch)[near].any())

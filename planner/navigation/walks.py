@@ -28,7 +28,10 @@ TRODDEN = 1.5  # squares: what is nearer than that to where the robot has been c
 # The predicates of planner/asp/deciding about links and ways alone.
 WALK_PREDICATES = (
     *((name, 1) for name in ("begins", "ends", "on", "avoid_link", "walked", "not_through")),
-    *((name, 2) for name in ("crosses", "borders", "risk", "trodden", "link_price", "part", "through", "door_price")),
+    *(
+        (name, 2)
+        for name in ("crosses", "borders", "risk", "trodden", "link_price", "part", "through", "door_price", "in_room")
+    ),
     *(("middle", 3), ("step", 3), ("tight", 4), ("link", 5)),
 )
 WALK_LEVEL = -22  # the level at which planner/asp/deciding/walks.lp adds lengths up

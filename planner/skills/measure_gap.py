@@ -1,9 +1,10 @@
 """Measuring a passage: the robot walks in it against one side, and then against the other.
 
-A wall lies anywhere in the squares in which it is seen. Where a walk along a row of floor is stopped, and a short walk
-back leads into the last square of the row, the wall begins at most that far behind the line between the squares:
-nothing else stops a robot, and no wall is in a square that is free. So what is between two such ends is known that
-well. Where the robot is still in a square of the wall, this lies further back, and it is not known how far.
+A wall lies anywhere in the squares in which it is seen. The robot walks along a row of floor a little into the first
+square of the wall, and less than that back. Where it is in the last square of floor then, it was stopped, so the wall
+begins at most so far behind the line between the squares: nothing else stops a robot, and no wall is in a square that
+is free. So what is between two such ends is known that well. Where it is still in the square of the wall, this lies
+further back. It is not walked against: a robot takes what stops it for lying at a line, and would mistake its place.
 """
 
 import math
@@ -19,7 +20,8 @@ from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.world.model import WorldModel
 
 STEP_BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
-BEHIND_LINE = 0.75  # squares beyond the line at which the wall may begin, to which the robot means to walk; convention
+PAST_DOUBT = 0.05  # squares by which the walk is longer than its way back and what its place is unsure; a convention
+MAX_LEEWAY = 0.2  # squares by which the place may be unsure for such a walk; a convention
 OFF_MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
 
 
@@ -90,13 +92,16 @@ class GapMeasurer:
         if walk is not None:  # it stands against the wall now
             self._walk = walk._replace(looks=looks, back=True)
             return x - STEP_BACK * walk.step[0], y - STEP_BACK * walk.step[1]
-        if _square(model.place) not in gap.squares or abs((y if gap.step[0] else x) % 1 - 0.5) > OFF_MIDDLE:
+        leeway = max(map(abs, model.leeway))
+        astray = abs((y if gap.step[0] else x) % 1 - 0.5) > OFF_MIDDLE
+        if _square(model.place) not in gap.squares or astray or leeway > MAX_LEEWAY:
             return None
         side = 0 if (gap.squares[0], 0) not in self._exact else -1
         step = gap.step if side else (-gap.step[0], -gap.step[1])
         self._walk = _Walk(looks, gap.squares[side], side, step)
         column, row = gap.squares[side]
-        far = step[0] * (column + 0.5 - x) + step[1] * (row + 0.5 - y) + 0.5 + BEHIND_LINE
+        to_line = step[0] * (column + 0.5 - x) + step[1] * (row + 0.5 - y) + 0.5
+        far = to_line + STEP_BACK + leeway + PAST_DOUBT
         return x + far * step[0], y + far * step[1]
 
     def note(self, looks: int, model: WorldModel) -> None:

@@ -7,9 +7,9 @@ import utak
 
 def rooms(south: str, north: str) -> utak.Scenario:
     """Return two rooms with a door from one height to another, and a square of 4 in the western one."""
-    inside = f"(2 2, 21 2, 21 {south}, 23 {south}, 23 2, 42 2, 42 28, 23 28, 23 {north}, 21 {north}, 21 28, 2 28, 2 2)"
+    inside = f"(2 2, 21 2, 21 {south}, 23 {south}, 23 2, 42 2, 42 20, 23 20, 23 {north}, 21 {north}, 21 20, 2 20, 2 2)"
     return utak.Scenario.from_text(
-        world=f"""table(44, 30). verge("POLYGON ((0 0, 0 30, 44 30, 44 0, 0 0), {inside})").
+        world=f"""table(44, 22). verge("POLYGON ((0 0, 0 22, 44 22, 44 0, 0 0), {inside})").
         utak("POINT (10.5 14.5)", 0). object(g1, g, "POLYGON ((6 5, 6 9, 10 9, 10 5, 6 5))").""",
         start="object(x).",
         goal="in(x, room(next)).",
