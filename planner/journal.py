@@ -58,6 +58,6 @@ def _rounded(place: XY) -> XY:
 
 def _routes(call: SolverCall) -> list[dict[str, Any]]:
     """Return the routes of a decision, each with its points and whether it was chosen; [] where none was offered."""
-    tight = (atom_parts(fact) for fact in call.facts) if call.encoding == DECIDING_ENCODING.stem and call.answer else ()
-    numbers = [int(arguments[0]) for name, arguments in tight if name == "tight"]
+    facts = call.facts if call.encoding == DECIDING_ENCODING.stem and call.answer else ()
+    numbers = [int(atom_parts(fact)[1][0]) for fact in facts if fact.startswith("tight(")]
     return [{"points": call.about[n], "chosen": f"walked({n})" in (call.answer or ())} for n in numbers]

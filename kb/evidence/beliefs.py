@@ -6,7 +6,7 @@ from itertools import islice
 from typing import Protocol
 
 from utak.kb.evidence.inputs import Given, input_reason, squares_reason, stretch_reason
-from utak.kb.evidence.plans import PLAN_ENCODING, TASK_PLAN_NAMES, plan_fact_reason
+from utak.kb.evidence.plans import DECIDED_BY, PLAN_ENCODING, TASK_PLAN_NAMES, plan_fact_reason
 from utak.kb.evidence.proving import words_of
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
@@ -90,7 +90,7 @@ class FactExplainer:
 
     def _agenda_with(self, given: str, step: int) -> SolverCall | None:
         """Return the choice of the agenda that has what the task plan was given, such as what S is stuck with."""
-        asked = (call for call in self.record.decisions(step) if call.encoding == "deciding")
+        asked = (call for call in self.record.decisions(step) if call.encoding == DECIDED_BY)
         return next((call for call in asked if given in (*call.facts, *(call.answer or ()))), None)
 
     def _below(self, fact: str, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:

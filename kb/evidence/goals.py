@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from utak.kb.evidence.beliefs import FactExplainer
-from utak.kb.evidence.plans import plan_step_reasons
+from utak.kb.evidence.plans import DECIDED_BY, plan_step_reasons
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import Record
 from utak.kb.evidence.witness import command_reason, line_squares, node_squares, seen_reason
@@ -14,7 +14,6 @@ from utak.kb.language.goal_words import GOAL_WORDS, PLACE_FACTS, ROBOT, WRAPPING
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, ROOT_NODE, VERGE_NODE
 
-DECIDED_BY = "deciding"  # the encoding that chooses what is done, and with which verdict a run ends
 CHOICES = {  # the predicates of its choices, and what was chosen, in words
     "do": "this activity was chosen",
     "choose": "this subgoal was chosen",
@@ -165,10 +164,8 @@ def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
     """Yield what was chosen last at a step: why, and what was refused."""
     asked = [call for call in beliefs.record.decisions(step) if call.encoding == DECIDED_BY and call.answer]
     for call in asked[-1:]:
-        for predicate in CHOICES:
-            for atom in call.answer or ():
-                if atom_parts(atom)[0] == predicate:
-                    yield replace(beliefs.prove(call, atom, step), because=_about(call, atom))
+        chosen = (atom for name in CHOICES for atom in call.answer or () if atom_parts(atom)[0] == name)
+        yield from (replace(beliefs.prove(call, atom, step), because=_about(call, atom)) for atom in chosen)
 
 
 def _about(call: SolverCall, atom: str) -> str:

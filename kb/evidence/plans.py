@@ -14,6 +14,7 @@ from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.stated_plan import circumstance_in_words, robot_step_in_words, stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
+DECIDED_BY = "deciding"  # the encoding that chooses what is done, and with which verdict a run ends
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 FOUND_WHEN_MADE = frozenset({"refuted", "given"})  # what is said of the step of the run at which the plan was made
@@ -105,7 +106,7 @@ def _what_stands_in_the_way(record: Record, planned: str, step: int) -> Iterator
     if found is None or f"occurs({planned},0)" not in (found[1].answer or ()):
         return
     for call in record.decisions(found[0]):
-        for about in call.about if call.encoding == "deciding" else ():
+        for about in call.about if call.encoding == DECIDED_BY else ():
             came, _, why = str(about).partition(": ")
             if came == f"pursue({subject})":
                 yield Reason(f"activity {came} led no further", why, ReasonKind.DECIDED, f"step {found[0]}")

@@ -15,11 +15,12 @@ from utak.geometry import Screen
 from utak.geometry.kernels.arrays import XY, Bools, Floats, Longs, Square
 from utak.geometry.pathfinders.grid_astar import grid_path
 from utak.geometry.pathfinders.visibility_graph import visibility_path
+from utak.kb.reasoning.encodings import encoding_constant
 from utak.kb.world.model import WorldModel, hundredths
 from utak.kb.world.pathgraph import bordering
 from utak.kb.world.rooms import Door, Rooms, count_crossings, went_through
 from utak.planner.navigation.network import Link, links_within, network
-from utak.planner.question import Question
+from utak.planner.question import DECIDING_ENCODING, Question
 from utak.planner.screen.projection import CostMaps, SquareIndices
 from utak.planner.screen.sweeps import squares_along
 
@@ -34,7 +35,7 @@ WALK_PREDICATES = (
     ),
     *(("middle", 3), ("step", 3), ("tight", 4), ("link", 5)),
 )
-WALK_LEVEL = -22  # the level at which planner/asp/deciding/walks.lp adds lengths up
+WALK_LEVEL = encoding_constant(DECIDING_ENCODING, "walk_level")  # at which it adds up lengths, and what comes on top
 MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
@@ -70,7 +71,7 @@ class WalkChoice(NamedTuple):
     """The walk that was chosen."""
 
     route: PlannedRoute
-    question: Question  # what was given, with the choice kept
+    question: Question  # what was given
 
 
 class WalkRules(NamedTuple):

@@ -20,7 +20,7 @@ from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN
 from utak.kb.world.model import WorldModel
 
 STEP_BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
-PAST_DOUBT = 0.05  # squares by which the walk is longer than its way back and what its place is unsure; a convention
+PAST_DOUBT = 0.05  # squares into the wall, besides the way back and what the place is unsure; a convention
 MAX_LEEWAY = 0.2  # squares by which the place may be unsure for such a walk; a convention
 OFF_MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
 
