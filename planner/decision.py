@@ -61,6 +61,10 @@ class Decision:
         if self.verdict == TaskVerdict.IMPOSSIBLE and not self.proof:
             raise ValueError(f"nothing proves that this is impossible: {self.why}")
 
+    def __bool__(self) -> bool:
+        """Return whether something is decided: a command, or a verdict."""
+        return self.command is not None or self.verdict is not None
+
     @property
     def result(self) -> str:
         """Return the result in the words of planner/asp/deciding: command, idle, settled, or the verdict."""
@@ -89,6 +93,6 @@ def done(why: str) -> Decision:
     return Decision(None, why, TaskVerdict.DONE)
 
 
-def with_command(decision: Decision | None) -> Decision | None:
-    """Return a decision that has a command; None for a verdict, for nothing to do, and for None."""
-    return None if decision is None or decision.command is None else decision
+def command_or_nothing(decision: Decision) -> Decision:
+    """Return a decision that has a command; that nothing is to be done, for the same reason, in place of a verdict."""
+    return decision if decision.command is not None else nothing_to_do(decision.why)

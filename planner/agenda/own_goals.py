@@ -22,9 +22,9 @@ from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
 from utak.planner.deciding.verification import (
     check_elsewhere,
-    look_again,
-    look_at_contradiction,
-    look_for_more,
+    looks_again,
+    looks_at_contradiction,
+    looks_for_more,
     robot_square,
 )
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
@@ -123,10 +123,9 @@ class OwnGoals:
     def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
         """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict."""
         situation, model = turn.situation, turn.situation.model
-        contradiction = look_at_contradiction(situation)
-        doubts = [] if contradiction is None else [contradiction]
+        contradiction = looks_at_contradiction(situation)
         meant = (situation.object_of(str(term)) for goal in turn.stage.goals for term in goal.args)
-        doubts += filter(None, (look_again(node, situation) for node in meant if node is not None))
+        doubts = [*contradiction, *(look for node in filter(None, meant) for look in looks_again(node, situation))]
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
             node = situation.object_of(x)
@@ -137,14 +136,13 @@ class OwnGoals:
             doubts = check_elsewhere(goal, began, covered, situation)
             if node is not None and doubts:
                 there = situation.goal_rooms(goal, began, situation.rooms, MIN_DOOR_CONFIDENCE)
-                pushed = next(filter(None, (push_to_see(node, doubt, there, turn) for doubt in doubts)), None)
-                if pushed is not None:
+                if pushed := next(filter(None, (push_to_see(node, doubt, there, turn) for doubt in doubts)), None):
                     return pushed
         looks = doubts if model.contradicted < RESIDUAL_WINDOW else []  # so many looks from elsewhere told nothing new
         found = turn.seek(looks, lambda: doubts[0].what) if doubts else nothing_to_do("nothing is left to look at")
         if found.verdict is not None and model.held is not None:  # what is in hand may shut the robot in
             return Decision(Release(), f"{model.held} is released, because the robot must walk: {found.why}")
-        if found.verdict is not None and contradiction is None:  # as for pieces that no floor is beside
+        if found.verdict is not None and not contradiction:  # as for pieces that no floor is beside
             return nothing_to_do(f"what the goals rest on cannot be looked at any better; {found.why}")
         return found
 
@@ -162,8 +160,7 @@ class OwnGoals:
             where: Sequence[Destination] = [self._where(goals[0], situation)]
         else:
             where = jointly([self._where(goal, situation) for goal in goals])
-            halt = self._halt(where, turn)
-            if halt is not None:
+            if halt := self._halt(where, turn):
                 return halt
         woke = situation.model.frame.origin
         about_start = shapely.Point(*woke).buffer(START_REACH, cap_style="square")
@@ -192,19 +189,18 @@ class OwnGoals:
         decision = turn.feel_before_verdict(ask)
         if decision.verdict == TaskVerdict.IMPOSSIBLE and is_apart_from_start(goals, woke, situation):
             return replace(decision, unless=None)
-        return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
+        return halt_beside_walls(decision, stage, situation)
 
-    def _halt(self, where: Sequence[Destination], turn: StageTurn) -> Decision | None:
-        """Return what is done where the goals hold or are doubtful: looks, presses, or done; None for a way to go."""
+    def _halt(self, where: Sequence[Destination], turn: StageTurn) -> Decision:
+        """Return what is done where the goals hold or are doubtful: looks, presses, or done; else nothing."""
         stage, situation = turn.stage, turn.situation
         there = all(not d.missing and robot_stands_on(d.squares, situation.model) for d in where)
         there = there or self._into_corner.is_pressing(stage, situation)
         look = _make_sure(stage.own, there, turn)
-        if look is not None or not there:
+        if look or not there:
             return look
-        nearer = self._into_corner.next(stage, situation)
-        if nearer is not None:
-            return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
+        if nearer := self._into_corner.next(stage, situation):
+            return nearer
         return _attained(f"{stage} holds for the robot", turn)
 
     def _go_round(self, name: str, turn: StageTurn) -> Decision:
@@ -263,11 +259,11 @@ def _attained(why: str, turn: StageTurn) -> Decision:
     return Decision(None, f"{doubt} since it woke", TaskVerdict.LIMIT)
 
 
-def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:
-    """Return a look at the objects of some goals before these are believed to hold; None when all are settled."""
+def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision:
+    """Return a look at the objects of some goals before these are believed to hold; nothing when all are settled."""
     verifier, situation = turn.verifier, turn.situation
     nodes = [situation.object_of(str(term)) for goal in goals for term in goal.args[1:]]
     doubted = [n for n in nodes if n is not None and (verifier.is_unsettled(n) or (there and n.vague))]
-    looks = [turn.look(verifier.next_look(node, situation)) for node in doubted]
-    looks += [turn.look_if_reached(look_for_more(node, situation)) for node in nodes if there and node is not None]
-    return next((look for look in looks if look is not None), None)
+    looks = [turn.look(verifier.looks_at(node, situation)) for node in doubted]
+    looks += [turn.look_if_reached(looks_for_more(node, situation)) for node in nodes if there and node is not None]
+    return next(filter(None, looks), nothing_to_do("nothing of the goals is in doubt"))

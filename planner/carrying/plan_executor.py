@@ -25,9 +25,9 @@ from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
 from utak.planner.carrying.preconditions import (
     PLACE_SLACK,
-    look_at_obstacle,
-    needed_view,
-    touch_of_obstacle,
+    looks_at_obstacles,
+    needed_views,
+    touches_of_obstacles,
     turn_cost,
 )
 from utak.planner.carrying.remaining_plan import (
@@ -119,7 +119,7 @@ class PlanExecutor:
         if plan is None:
             self.missed += before is not None and before.grasped and not before.ended
             answer = self._answer_failure(before, situation.model, other_way)
-            if answer is not None:
+            if isinstance(answer, Act):
                 return answer
         last = before.target if before is not None else ""
         while True:
@@ -127,18 +127,17 @@ class PlanExecutor:
             if isinstance(found, See | Infeasibility):
                 return found
             advice = self._next_step(found, ends if found.name == node.name else {}, situation)
-            if advice is not None:
+            if not isinstance(advice, Infeasibility):
                 return advice
             self.failed.record(situation.model.object(found.name), situation.model)
             plan, self._plan = None, None
 
-    def try_through(self, node: Node, ends: Mapping[str, End], opened: Bools, situation: Situation) -> Act | Go | None:
+    def try_through(self, node: Node, ends: Mapping[str, End], opened: Bools, situation: Situation) -> Advice:
         """Return what to do to carry an object to one of several ends as if some squares of wall were free."""
-        # None where no plan leads there, or the object is not felt where it should be grasped.
         request = self._request(node, ends, "", situation.model)
         found = self._oracle.through(request, opened, situation)
         if found is None or self._plans >= MAX_PLANS:
-            return None
+            return Infeasibility(False, "no plan leads through")
         self._plans += 1
         return self._next_step(self._operations.begin_plan(found, node, situation.model), ends, situation)
 
@@ -158,48 +157,47 @@ class PlanExecutor:
         self.failed.record(model.object(model.held), model)
         return Act(Release(), f"{model.held} is released, because it was carried round in circles")
 
-    def continue_plan(self, node: Node, situation: Situation) -> Act | None:
-        """Return the next command of the plan under way for the held object; None when there is no such plan."""
-        if self._plan is None or self._plan.name != node.name or situation.model.held != node.name:
-            return None
-        plan = self._operations.revalidate(self._plan, None, situation)
+    def continue_plan(self, node: Node, situation: Situation) -> Advice:
+        """Return the next command of the plan under way for the held object, if there is such a plan."""
+        own = self._plan is not None and self._plan.name == node.name == situation.model.held
+        plan = self._operations.revalidate(self._plan, None, situation) if own and self._plan else None
         if plan is None:
-            return None
-        advice = self._next_step(plan, {}, situation)
-        return advice if isinstance(advice, Act) else None
+            return Infeasibility(False, f"no plan is under way for {node.name}")
+        return self._next_step(plan, {}, situation)
 
-    def take_along(self, node: Node, squares: SquareIndices, fetch: bool, situation: Situation) -> Act | Go | None:
-        """Return what takes an object along to where the robot wants to look; None when it had better walk there."""
-        model = situation.model
+    def take_along(self, node: Node, squares: SquareIndices, fetch: bool, situation: Situation) -> Advice:
+        """Return what takes an object along to where the robot wants to look, unless it had better walk there alone."""
+        model, alone = situation.model, Infeasibility(False, f"{node.name} had better stay")
         if node.stuck or self._plans >= MAX_PLANS or model.held not in (None, node.name):
-            return None
+            return alone
         push = shortest_push(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
             return unplanned_act(push, f"{node.name} is taken along", model)
-        return self._bring_near(node, squares, situation) if fetch else None
+        return self._bring_near(node, squares, situation) if fetch else alone
 
     def detour(
         self, node: Node, looks: Sequence[SquareIndices], ends: Mapping[str, End], situation: Situation
-    ) -> Act | None:
+    ) -> Advice:
         """Return a push with the held object, in place of the one advised last, that halts where something is seen."""
-        # None when there is no such push (see `detour_push`), or when what is left of the plan is not one leg of pushes
-        # with the object in hand.
+        # There may be none (see `detour_push`), as when what is left of the plan is not one leg of pushes with the
+        # object in hand.
+        none = Infeasibility(False, "no push halts where it is seen")
         plan = self._plan
         if not self.pull or node.stuck or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
-            return None
+            return none
         if len(plan.legs) != 1 or not plan.grasped or self._pushed is None:
-            return None
+            return none
         pushes = [self._pushed, *(motion for motion in plan.legs[0].motions if isinstance(motion, Translate))]
         if len(pushes) <= len(plan.legs[0].motions):
-            return None
+            return none
         push = detour_push(node, looks, ends, pushes, situation)
-        return None if push is None else unplanned_act(push, f"{node.name} is taken along", situation.model)
+        return none if push is None else unplanned_act(push, f"{node.name} is taken along", situation.model)
 
-    def lead_out(self, node: Node, situation: Situation) -> Act | None:
+    def lead_out(self, node: Node, situation: Situation) -> Advice:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed."""
         push = escape_push(node, situation) if self.pull and self._plans < MAX_PLANS else None
         if push is None:
-            return None
+            return Infeasibility(False, "no push leads it out")
         self.failed.record(node, situation.model)
         return unplanned_act(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
 
@@ -212,20 +210,21 @@ class PlanExecutor:
         if act.unplanned_push is not None:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
-    def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | Go | None:
+    def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Advice:
         """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
-        # Returns None when that cannot be done over squares that are surely free.
+        # Only over squares that are surely free.
+        no_way = Infeasibility(False, f"no simple way brings {node.name} there")
         plan, self._viewpoint_plan = self._viewpoint_plan, None
         end = region_near(squares, situation)
         if end is None:
-            return None
+            return no_way
         ends = {VIEWPOINT_TARGET: end}
         if plan is not None:
             plan = self._operations.revalidate(plan, ends, situation) if plan.name == node.name else None
         if plan is None:
             found = self._viewpoint_oracle.find(self._request(node, ends, "", situation.model), situation)
             if isinstance(found, Infeasibility) or found.level or found.aside or not found.is_simple:
-                return None
+                return no_way
             self._plans += 1
             plan = self._operations.begin_plan(found, node, situation.model)
         advice = self._next_step(plan, ends, situation)
@@ -234,16 +233,17 @@ class PlanExecutor:
 
     # -- when a plan fails -----------------------------------------------------------------------
 
-    def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel, other_way: bool) -> Advice | None:
+    def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel, other_way: bool) -> Advice:
         """Return what to do when a motion did not move the held object: draw it back once, then release it."""
         # An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
-        # degree off, for it is pushed against it as well. Returns None when nothing failed, or when nothing is held:
-        # then a grasp that the plan, which no longer holds, relied on is marked as failed.
+        # degree off, for it is pushed against it as well. Nothing is to be done when nothing failed, or when nothing is
+        # held: then a grasp that the plan, which no longer holds, relied on is marked as failed.
+        no_need = Infeasibility(False, "no motion failed")
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
             self.failed.record(model.object(plan.name), model)
         if held is None or not held.stuck:
-            return None
+            return no_need
         if held.moved:
             self._contacts[held.name] = self._contacts.get(held.name, 0) + 1
         pushed, self._pushed = self._pushed, None
@@ -251,7 +251,7 @@ class PlanExecutor:
         if held.stuck > 1 or self._contacts.get(held.name, 0) > bound:
             self.failed.record(held, model)
         elif other_way:
-            return None
+            return no_need
         elif held.moved and pushed is not None and self.pull:
             doubted = self._contacts[held.name] > 1 or not is_grid_aligned(held.polygon)
             retreat = retreat_push(held, pushed, model, doubted)
@@ -278,11 +278,10 @@ class PlanExecutor:
             if isinstance(cleared, See | Infeasibility):
                 return cleared
             node, found = cleared
-        seen = needed_view(found, node, situation)
-        if seen is not None:
+        for look in needed_views(found, node, situation):
             prefix = self._operations.safe_prefix(found, node, situation)
             if prefix is None:
-                return seen
+                return See(look)
             found = prefix
         if not found.plan.legs:
             return Infeasibility(False, f"{node.name} seems to lie there already")
@@ -296,16 +295,14 @@ class PlanExecutor:
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
         """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
-        touch = touch_of_obstacle(found, situation)
-        if touch is not None:
-            return touch
+        for touch in touches_of_obstacles(found, situation):
+            return See(touch)
         asked = [self._plan_aside(other, found, situation) for other in situation.model.objects]
         cleared = [one for one in asked if one is not None]
         if cleared:
             return min(cleared, key=lambda one: one[1].plan.commands)
-        look = look_at_obstacle(found, situation)
-        if look is not None:
-            return look
+        for look in looks_at_obstacles(found, situation):
+            return See(look)
         return Infeasibility(False, f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside")
 
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
@@ -334,8 +331,8 @@ class PlanExecutor:
 
     # -- following a plan ------------------------------------------------------------------------
 
-    def _next_step(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
-        """Return the next step of a plan; None when the object is not felt where it should be grasped."""
+    def _next_step(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Advice:
+        """Return the next step of a plan, unless the object is not felt where it should be grasped."""
         self._plan = plan
         leg, model = plan.legs[0], situation.model
         if not plan.grasped:
@@ -354,10 +351,9 @@ class PlanExecutor:
         why = f"{plan.name} is {moved} on the way to its place ({plan.target})"
         return Act(command_of(motion, model), why, steps=plan.steps(model))
 
-    def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+    def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Advice:
         """Return the step to where the object is grasped, or the grasp; from the present place if that does as well."""
-        # A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could
-        # be the object: it lies otherwise than believed.
+        # A held object that must be grasped otherwise is released first.
         model, leg = situation.model, plan.legs[0]
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)
         begun = plan if is_at(model, leg.place) else None
@@ -380,7 +376,7 @@ class PlanExecutor:
             return Act(Move(*model.frame.to_utak(dx, dy)), why, steps=plan.steps(model))
         direction = grasp_direction(plan, model)
         if direction is None:
-            return None
+            return Infeasibility(False, f"{plan.name} is not felt where it should be grasped: it lies otherwise")
         self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
         why = f"{plan.name} is grasped, to be carried to its place ({plan.target})"
         return Act(Grasp(direction), why, steps=(grasp(plan.name, direction), *self._plan.steps(model)))

@@ -45,55 +45,52 @@ class ObstacleClearer:
         """Return the next command for the obstacle that is being moved; nothing when it blocks no longer."""
         # Nothing, too, when its command would close a loop: then it is no longer being moved.
         node, held = turn.situation.model.object(self._moving), turn.situation.model.held
-        decided = None
+        decided = nothing_to_do(f"{self._moving} is no longer moved aside")
         if node is not None and held == node.name:
             last = self._supposed
             again = None if last is None else suppose(node, last.side, last.depth, turn.situation)
             decided = carry_on(node, turn if again is None else turn.within(again.situation))
         serves = held in (None, self._moving) or turn.executor.serves(self._moving)  # what is in its way, too
-        if decided is None and node is not None and serves:
-            decided = self._move_first(self._movable(turn.situation), turn, node.name) or another_way(node, turn)
-        if decided is None:
-            gone, self._moving = self._moving, ""
-            return nothing_to_do(f"{gone} is no longer moved aside")
+        if node is not None and serves:
+            decided = decided or self._move_first(self._movable(turn.situation), turn, node.name)
+            decided = decided or another_way(node, turn)
+        if not decided:
+            self._moving = ""
         return decided
 
     def feel_on(self, turn: StageTurn) -> Decision:
         """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left."""
         found = self._pull(turn)
-        felt = None if found is not None else feel_walls(turn)
-        self._feeling = felt is not None
-        return found or felt or nothing_to_do("nothing is left to feel")
+        felt = found or feel_walls(turn)
+        self._feeling = bool(felt) and not found
+        return felt
 
     def clear(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move aside what blocks the robot's way."""
         self._stays = turn.situation.named_by(goals)
         ringed = is_ringed(turn.situation.model, turn.situation.cost_maps.floor)
-        instead = self._passages.next(turn) if ringed else None
-        instead = instead or self._move_first(self._movable(turn.situation), turn)
-        return instead or nothing_to_do("nothing that blocks the robot's way can be moved aside")
+        passed = self._passages.next(turn) if ringed else None
+        return passed or self._move_first(self._movable(turn.situation), turn)
 
     def pull(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move what may go on in a wall, as far as that was seen."""
         self._stays = turn.situation.named_by(goals)
-        return self._pull(turn) or nothing_to_do("nothing that may go on in a wall can be moved")
+        return self._pull(turn)
 
     def feel(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to feel walls that may be things; nothing when none is left that can be reached."""
         self._stays = turn.situation.named_by(goals)
         felt = feel_walls(turn)
-        self._feeling |= felt is not None
-        if felt is None and not feeling_scope(turn).parting:
-            felt = self._passages.next(turn)
-        return felt or nothing_to_do("nothing is left to feel")
+        self._feeling |= bool(felt)
+        return felt if felt or feeling_scope(turn).parting else self._passages.next(turn)
 
     def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move away what stands before walls that were never felt; nothing for none."""
         self._stays = turn.situation.named_by(goals)
         self._stays -= {node.name for node in turn.situation.model.objects if node.moved}  # it was put there by chance
-        hidden = before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn))
-        instead = self._move_first_of(hidden, turn)
-        return instead or nothing_to_do("nothing that stands before walls can be moved away")
+        return self._move_first_of(
+            before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn)), turn
+        )
 
     def blame(self, situation: Situation) -> Decision:
         """Return the verdict `limit` with the objects that block the robot's way still; nothing when there is none."""
@@ -106,8 +103,8 @@ class ObstacleClearer:
             return nothing_to_do("no object blocks the robot's way")
         return Decision(None, "; ".join(dict.fromkeys(blocking)), TaskVerdict.LIMIT)
 
-    def _pull(self, turn: StageTurn) -> Decision | None:
-        """Return the next command to move what may go on in a wall; None for no such thing."""
+    def _pull(self, turn: StageTurn) -> Decision:
+        """Return the next command to move what may go on in a wall; nothing for no such thing."""
         parting = feeling_scope(turn).parting
         return self._move_first_of(hidden_in_walls(self._movable(turn.situation), turn.situation, parting), turn)
 
@@ -118,20 +115,19 @@ class ObstacleClearer:
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in self._stays]
 
-    def _move_first(self, things: Sequence[Node], turn: StageTurn, name: str = "") -> Decision | None:
+    def _move_first(self, things: Sequence[Node], turn: StageTurn, name: str = "") -> Decision:
         """Return the next command to move aside the first object that blocks, and remember which it is."""
         parting = feeling_scope(turn).parting
         found = obstacles(things, turn.situation, walls_to_feel(turn), parting)
         return self._move_first_of((one for one in found if name in ("", one.node.name)), turn)
 
-    def _move_first_of(self, found: Iterable[Obstacle], turn: StageTurn) -> Decision | None:
-        """Return the next command to move aside the first obstacle that can be, and remember it; None for none."""
+    def _move_first_of(self, found: Iterable[Obstacle], turn: StageTurn) -> Decision:
+        """Return the next command to move aside the first obstacle that can be, and remember it; nothing for none."""
         for one in found:
-            instead = _move_aside(one.node, one.aside, turn.within(one.situation))
-            if instead is not None:
+            if instead := _move_aside(one.node, one.aside, turn.within(one.situation)):
                 self._moving, self._supposed = one.node.name, one.supposed
                 return instead
-        return None
+        return nothing_to_do("nothing that is in the way can be moved aside")
 
 
 def _how_often_tried(node: Node) -> str:
@@ -144,10 +140,7 @@ def _how_often_tried(node: Node) -> str:
     )
 
 
-def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision | None:
-    """Return the next command to move an object aside, or to find out what it is; None when there is none."""
-    rim = feel_rim(node, turn)
-    if rim is not None:
-        return rim
+def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision:
+    """Return the next command to move an object aside, or to find out what it is; nothing when there is none."""
     purpose = f"{node.name} blocks the robot's way: "
-    return bring_to_end(node, {ASIDE_TARGET: aside}, turn, purpose)
+    return feel_rim(node, turn) or bring_to_end(node, {ASIDE_TARGET: aside}, turn, purpose)

@@ -15,7 +15,7 @@ from utak.kb.world.model import Node
 from utak.kb.world.rooms import Door
 from utak.planner.advice import Go
 from utak.planner.deciding.stage_turn import StageTurn
-from utak.planner.decision import Decision, with_command
+from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import move_to, one_move_squares
 from utak.planner.screen.projection import dilate, indices_to_mask
@@ -83,24 +83,24 @@ def walls_to_feel(turn: StageTurn) -> Bools:
     return mask
 
 
-def feel_walls(turn: StageTurn) -> Decision | None:
-    """Return the next command to feel walls that may be things; None when none is left that can be reached."""
+def feel_walls(turn: StageTurn) -> Decision:
+    """Return the next command to feel walls that may be things; nothing when none is left that can be reached."""
     places = feeling_places(turn.situation.cost_maps, feeling_scope(turn))
-    return with_command(turn.seek(halts(places, turn.situation)))
+    return command_or_nothing(turn.seek(halts(places, turn.situation)))
 
 
-def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
-    """Return the next command to feel things all round; None when none can be reached to be felt."""
-    return with_command(turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims])) if rims else None
+def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision:
+    """Return the next command to feel things all round; nothing when none can be reached to be felt."""
+    return turn.look_if_reached([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims])
 
 
-def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
-    """Return the next command to feel how far an object goes on along the wall in which it stands; None when known."""
+def feel_rim(node: Node, turn: StageTurn) -> Decision:
+    """Return the next command to feel how far an object goes on along the wall it stands in; nothing when known."""
     if node.moved or node.colour is None:
-        return None
+        return nothing_to_do(f"it is known how far {node.name} goes")
     near = dilate(turn.situation.model.mask(node.patch), 2).ravel()
     places = [p for p in feeling_places(turn.situation.cost_maps) if WallKind.THING in p.squares and near[p.square]]
-    return with_command(turn.seek(halts(places, turn.situation)))
+    return command_or_nothing(turn.seek(halts(places, turn.situation)))
 
 
 def halts(places: Sequence[FeelingPlace], situation: Situation) -> list[Subgoal]:
@@ -141,8 +141,8 @@ class Passages:
         """Make one that tried nothing."""
         self._tried: set[WallLine] = set()
 
-    def next(self, turn: StageTurn) -> Decision | None:
-        """Return the next command to walk through wall to floor beyond it; None when no line is left."""
+    def next(self, turn: StageTurn) -> Decision:
+        """Return the next command to walk through wall to floor beyond it; nothing when no line is left."""
         situation = turn.situation
         model, far = situation.model, situation.cost_maps.distances[0].ravel()
         walks = passages(situation.cost_maps, things=not is_ringed(model, situation.cost_maps.floor))
@@ -153,10 +153,10 @@ class Passages:
                 self._tried.add(passage.line)
                 return Decision(move_to(passage.end, model), f"{PASSAGE_REASON}; {turn.stage}")
             go = Go(np.array([passage.square]), passage.start, PASSAGE_REASON)
-            walk = with_command(turn.within(situation).go(go))
-            if walk is not None:
+            walk = turn.go(go)
+            if walk.command is not None:
                 return walk
-        return None
+        return nothing_to_do("no wall is left behind which floor is seen")
 
     def _is_tried(self, line: WallLine) -> bool:
         """Return whether a walk on a line, or right beside it, was tried."""

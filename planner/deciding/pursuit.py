@@ -72,7 +72,7 @@ class Pursuer:
         situation: Situation,
         missing: Callable[[], str],
         proof: Sequence[str] = (),
-        along: Callable[[Subgoal], Decision | None] | None = None,
+        along: Callable[[Subgoal], Decision] | None = None,
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict when none can be reached."""
         model = situation.model
@@ -97,8 +97,7 @@ class Pursuer:
                     missed, proof = f"{missed}, and {' and '.join(dict.fromkeys(whys))}", ()
                 return _given_up(stage, missed, proof, in_circles=circled)
             subgoal, question = chosen
-            taken = None if along is None else along(subgoal)
-            if taken is not None:
+            if along is not None and (taken := along(subgoal)):
                 return taken
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
@@ -118,12 +117,12 @@ class Pursuer:
     def feel_before_verdict(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
         """Return what is decided; before a verdict, feel what may be an object against a wall, or part of a wall."""
         decision = None if self._feeling else ask()
-        if decision is None or decision.verdict:
-            subgoals = self.contacts(situation)
-            felt = [self.pursue(subgoals, stage, situation, lambda: "")] if subgoals else []
-            self._feeling = any(not instead.verdict for instead in felt)
-            return felt[0] if self._feeling else decision or ask()
-        return decision
+        if decision is not None and not decision.verdict:
+            return decision
+        subgoals = self.contacts(situation)
+        felt = self.pursue(subgoals, stage, situation, str) if subgoals else None
+        self._feeling = felt is not None and not felt.verdict
+        return felt if felt is not None and self._feeling else decision or ask()
 
     def _walk(
         self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None

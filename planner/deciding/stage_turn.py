@@ -12,7 +12,7 @@ from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
 from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
-from utak.planner.decision import Decision, with_command
+from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import halt_exactly_at
 from utak.planner.situation import Situation
@@ -56,7 +56,7 @@ class StageTurn:
         subgoals: Sequence[Subgoal],
         missing: Callable[[], str] = str,
         proof: Sequence[str] = (),
-        along: Callable[[Subgoal], Decision | None] | None = None,
+        along: Callable[[Subgoal], Decision] | None = None,
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue."""
         return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, proof, along)
@@ -65,31 +65,41 @@ class StageTurn:
         """Return whether a command that is about to be given leads in a loop: see Pursuer.closes_loop."""
         return self.pursuer.closes_loop(self.situation.model, command)
 
-    def look(self, look: Subgoal | None) -> Decision | None:
-        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
-        return None if look is None else self.seek([look], lambda: look.what)
+    def look(self, looks: Sequence[Subgoal]) -> Decision:
+        """Return the next command towards the best look; nothing for no looks; `limit` when no way leads there."""
+        return self.seek(looks, lambda: looks[0].what) if looks else nothing_to_do("nothing is left to look at")
 
-    def look_if_reached(self, look: Subgoal | None) -> Decision | None:
-        """Return the next command towards a look; None for no look, or when no way leads there."""
-        return with_command(self.look(look))
+    def look_if_reached(self, looks: Sequence[Subgoal]) -> Decision:
+        """Return the next command towards the best look; nothing for no looks, or when no way leads there."""
+        return command_or_nothing(self.look(looks))
 
     def go(self, go: Go) -> Decision:
         """Return the next command to where an object is grasped, so that the last move halts there; or the verdict."""
         walk = self.seek([Subgoal(SubgoalKind.ATTAIN, go.square, go.why)], lambda: "no way leads there")
-        command = halt_exactly_at(walk.command, go.place, self.situation.model)
-        return replace(walk, command=command, steps=go.steps if isinstance(command, Move) else walk.steps)
+        if not isinstance(walk.command, Move):
+            return walk
+        return replace(walk, command=halt_exactly_at(walk.command, go.place, self.situation.model), steps=go.steps)
 
     def act(self, act: Act, why: str = "") -> Decision:
         """Return the command of an act, for a reason of its own or another one."""
+        self.executor.depart(act)
         return Decision(act.command, f"{why or act.why}; {self.stage}", steps=act.steps)
 
-    def prepare(self, advice: Advice) -> Decision | None:
-        """Return the next command to where an object is grasped or squares are seen; None for other advice."""
+    def act_anew(self, advice: Advice, why: str = "") -> Decision:
+        """Return the same of an act; nothing where its command would close a loop, and for other advice."""
+        if not isinstance(advice, Act):
+            return nothing_to_do(f"nothing is under way; {self.stage}")
+        if self.closes_loop(advice.command):
+            return nothing_to_do(f"{advice.why}, as before in the same state; {self.stage}")
+        return self.act(advice, why)
+
+    def prepare(self, advice: Advice) -> Decision:
+        """Return the next command to where an object is grasped or squares are seen; nothing for other advice."""
         if isinstance(advice, Go):
-            return with_command(self.go(advice))
+            return command_or_nothing(self.go(advice))
         if isinstance(advice, See):
-            return self.look_if_reached(Subgoal(SubgoalKind.INSPECT, *advice.viewpoint))
-        return None
+            return self.look_if_reached([Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)])
+        return nothing_to_do("no place to go to, and nothing to look at first, is known")
 
     def feel_before_verdict(self, ask: Callable[[], Decision]) -> Decision:
         """Return what is decided; what may be an object is felt before a verdict: see Pursuer.feel_before_verdict."""

@@ -23,8 +23,8 @@ from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.trials import measure_gaps
-from utak.planner.deciding.verification import look_before_grasp, look_for_more
-from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
+from utak.planner.deciding.verification import looks_before_grasp, looks_for_more
+from utak.planner.decision import Decision, TaskVerdict, command_or_nothing, done, impossible, nothing_to_do
 from utak.planner.goals.corner_goal import approach_for_goals
 from utak.planner.goals.joint import conflict
 from utak.planner.goals.object_goals import goal_placement
@@ -81,8 +81,7 @@ class Transporter:
             pressed = self._press_on(node, turn)
             if pressed or not self._land(goal, node, turn).viewpoints:
                 return pressed or done(f"{goal} holds")
-        look = _look_at(node, turn)
-        if look is not None:
+        if look := _look_at(node, turn):
             return look
         if node.polygon is None:
             why = f"{turn.stage} is not attempted: the outline of {node.name} is not known"
@@ -105,21 +104,17 @@ class Transporter:
             return self._press_on(node, turn) or done(f"{goal} holds")
         if land.presses and not self._presser.has_begun(goal, node):
             self._presser.begin(goal, node, land, turn.situation)
-            pressed = self._press_on(node, turn)
-            if pressed is not None:
+            if pressed := self._press_on(node, turn):
                 return pressed
         advice = self._advice(node, land, turn)
         if isinstance(advice, Infeasibility) and land.loose:
             if meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation)):
-                led = self._lead_out(node, turn) if turn.stage.goes_on else None
-                return led or done(f"{goal} holds")
+                return self._released_well(node, turn) or done(f"{goal} holds")
             advice = turn.executor.advise(node, land.loose, turn.situation)
         if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
         if isinstance(advice, Act):
-            detour = isinstance(advice.command, Push)
-            instead = _look_by_the_way(node, land, turn) if detour else None
-            return instead or self._act(advice, node, turn)
+            return _look_by_the_way(advice, node, land, turn) or self._act(advice, node, turn)
         if isinstance(advice, Go):
             walk = turn.go(advice)
             if walk.command is not None:
@@ -131,10 +126,9 @@ class Transporter:
             subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
             return turn.seek([subgoal], along=along)
         # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
-        if self._passages.begun(node, turn.situation.model):
-            trial = self._try_passage(advice, node, land.must_reach.ends() or land.ends, turn)
-            if trial is not None:
-                return trial
+        begun = self._passages.begun(node, turn.situation.model)
+        if begun and (trial := self._try_passage(advice, node, land.must_reach.ends() or land.ends, turn)):
+            return trial
         unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
         subgoals = self.search([unknown], turn.situation, turn.reconciled)
         decision = self._look_for_way(advice, node, land, subgoals, turn)
@@ -192,23 +186,21 @@ class Transporter:
     def measured(self, parameters: Collection[str], decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; in place of a verdict the next push to measure what parameters may mean."""
         goes_on = self._is_measuring and isinstance(decision.command, Release)
-        push = None
+        push = nothing_to_do("nothing is to be measured")
         if decision.verdict not in (None, TaskVerdict.DONE) or goes_on:
             like = [name for parameter, name in turn.reconciled.measurable if parameter in parameters]
             seen = (thing for thing in turn.situation.model.objects if thing.name in like)
-            push = next(filter(None, (self._measure(thing, turn) for thing in seen)), None)
-        self._is_measuring = push is not None
+            push = next(filter(None, (self._measure(thing, turn) for thing in seen)), push)
+        self._is_measuring = bool(push)
         return push or decision
 
     def _act(self, advice: Act, node: Node, turn: StageTurn) -> Decision:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
         if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
             advice = turn.executor.release_looping(turn.situation.model)
-        if isinstance(advice.command, Move | Grasp):
-            subgoal = look_before_grasp(node, turn.executor.turns, turn.situation)
-            look = turn.look(subgoal)
-            if look is not None:
-                return look
+        grasps = isinstance(advice.command, Move | Grasp)
+        if grasps and (look := turn.look(looks_before_grasp(node, turn.executor.turns, turn.situation))):
+            return look
         if isinstance(advice.command, Push | Turn):
             self._presser.forget()
         return turn.act(advice)
@@ -256,30 +248,31 @@ class Transporter:
         if decision.verdict != TaskVerdict.IMPOSSIBLE:
             return decision
         recheck = turn.verifier.recheck_passage(refused, turn.situation)
-        if recheck is not None:
-            return turn.seek([recheck], refused.reason, refused.proof())
+        if recheck:
+            return turn.seek(recheck, refused.reason, refused.proof())
         ends, near = must_reach or land.ends, refused.neck()
-        instead = self._measure_refused(node, ends, turn) if ends else None
-        if instead is None and ends:
+        if ends:
+            if instead := self._measure_refused(node, ends, turn):
+                return instead
             refused, instead = measure_gaps(self._gaps, refused, node, ends, turn, self._try_passage)
-        return instead or replace(decision, unless=refused.unless(), near=near)
+            if instead:
+                return instead
+        return replace(decision, unless=refused.unless(), near=near)
 
-    def _try_passage(
-        self, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn
-    ) -> Decision | None:
-        """Return the next command of a trial of a passage that may be wide enough; None where there is none."""
+    def _try_passage(self, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision:
+        """Return the next command of a trial of a passage that may be wide enough; nothing where there is none."""
+        untried = nothing_to_do(f"no passage that may be wide enough for {node.name} is left to try")
         if refused.refutation is None or not refused.unless() or not ends:
-            return None
+            return untried
         closest, why = refused.refutation.closest, f"the passage for {node.name} may be wider than it seems"
         assert closest.passage is not None
         while trial := self._passages.next(node, closest.passage, closest.missing, turn.situation.model):
             if trial.aside:
                 poses = {f"{SHARE_TARGET}{n}": At(pose) for n, pose in enumerate(trial.aside)}
                 return _begun(turn.executor.advise(node, poses, turn.situation), why, turn)
-            through = turn.executor.try_through(node, ends, trial.opened, turn.situation)
-            if through is not None and (begun := _begun(through, why, turn)):
+            if begun := _begun(turn.executor.try_through(node, ends, trial.opened, turn.situation), why, turn):
                 return begun
-        return None
+        return untried
 
     def _advice(self, node: Node, land: Placement, turn: StageTurn) -> Advice:
         """Return what to do to carry an object to where its goal holds; while that is not known, to near it."""
@@ -293,7 +286,7 @@ class Transporter:
         if land.ends:
             return executor.advise(node, land.ends, situation, land.hoped.ends)
         onward = executor.continue_plan(node, situation)
-        if onward is not None:
+        if isinstance(onward, Act):
             return onward
         for name, end in land.approach.items() if not situation.minds_doors(node.name) else ():
             advice = executor.advise(node, {name: end}, situation, land.hoped.ends)
@@ -308,96 +301,91 @@ class Transporter:
         if not isinstance(decision.command, Release) or turn.situation.model.lost or held is None or not held.polygon:
             return decision
         out = self._lead_out(held, turn)
-        return decision if out is None or out.command is None or turn.closes_loop(out.command) else out
+        return decision if out.command is None or turn.closes_loop(out.command) else out
 
-    def _press_on(self, node: Node, turn: StageTurn) -> Decision | None:
-        """Return the next press of a held object against a wall; when none is left, what leads it out; or None."""
-        # It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
-        act = self._presser.next(node, turn.situation.model)
-        if act is None:
-            return self._lead_out(node, turn) if turn.stage.goes_on else None
-        turn.executor.depart(act)
-        return turn.act(act)
+    def _press_on(self, node: Node, turn: StageTurn) -> Decision:
+        """Return the next press of a held object against a wall; when none is left, what leads it out; or nothing."""
+        if self._presser.has_next(node):
+            return turn.act(self._presser.next(node, turn.situation.model))
+        return self._released_well(node, turn)
 
-    def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision | None:
-        """Return the push after which the held object no longer shuts the robot in."""
+    def _released_well(self, node: Node, turn: StageTurn) -> Decision:
+        """Return what leads a held object out where it shuts in a robot that has more to do; else nothing."""
+        return self._lead_out(node, turn) if turn.stage.goes_on else nothing_to_do("the robot has nothing more to do")
+
+    def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision:
+        """Return the push after which the held object no longer shuts the robot in; nothing where there is none."""
         if not shut_in and robot_can_leave(node, turn.situation):
-            return None
+            return nothing_to_do(f"{node.name} does not shut the robot in")
         out = turn.executor.lead_out(node, turn.situation)
-        if out is None:
-            return None
+        if not isinstance(out, Act):
+            return nothing_to_do(f"no push leads {node.name} out")
         self._presser.forget()
-        turn.executor.depart(out)
         return turn.act(out)
 
-    def _measure_refused(self, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision | None:
-        """Return the next command to measure an object that seems too large for all ends; None when it surely is."""
-        if (push := self._measure(node, turn)) is not None:
+    def _measure_refused(self, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision:
+        """Return the next command to measure an object that seems too large for all ends; nothing when it surely is."""
+        if push := self._measure(node, turn):
             return push
         least = least_outline(node)
         refused = least and turn.executor.infeasibility(replace(node, polygon=least), ends, turn.situation)
         if refused and refused.proved:
-            return None
+            return nothing_to_do(f"{node.name} is too large in any case")
         why = f"it cannot be told whether {turn.stage} can be attained: the size of {node.name} is not known well"
         return Decision(None, why, TaskVerdict.LIMIT)
 
-    def _measure(self, node: Node, turn: StageTurn) -> Decision | None:
-        """Return the next command to push an object by a part of a square, to measure it; None when that is done."""
+    def _measure(self, node: Node, turn: StageTurn) -> Decision:
+        """Return the next command to push an object by a part of a square, to measure it; nothing when that is done."""
         for pose in self._size_estimator.poses(node):
             why = f"the size of {node.name} is not sure, so it is measured"
             if begun := _begun(turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation), why, turn):
                 return begun
-        return None
+        return nothing_to_do(f"no push tells more of the size of {node.name}")
 
 
-def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision | None:
-    """Return the next command of some advice, for a push with a reason of its own; None where there is none."""
+def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision:
+    """Return the next command of some advice, for a push with a reason of its own; nothing where there is none."""
     if isinstance(advice, Act):
         return turn.act(advice, why)
     return turn.prepare(advice)
 
 
-def _look_at(node: Node, turn: StageTurn) -> Decision | None:
-    """Return the next command to look at an object of which something is not clear; None when no look tells more."""
-    if node.polygon is None or node.vague or turn.verifier.is_unsettled(node):
-        look = turn.look(turn.verifier.next_look(node, turn.situation))
-        if look is not None:
-            return look
-    return turn.look_if_reached(look_for_more(node, turn.situation))
+def _look_at(node: Node, turn: StageTurn) -> Decision:
+    """Return the next command to look at an object of which something is not clear; nothing when no look tells more."""
+    unclear = node.polygon is None or node.vague or turn.verifier.is_unsettled(node)
+    look = turn.look(turn.verifier.looks_at(node, turn.situation) if unclear else [])
+    return look or turn.look_if_reached(looks_for_more(node, turn.situation))
 
 
-def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision | None:
+def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn) -> Decision:
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for."""
-    looks = land.by_the_way.viewpoints()
+    looks = land.by_the_way.viewpoints() if isinstance(planned.command, Push) else []
     if not looks:
-        return None
+        return nothing_to_do("nothing is to be seen by the way")
     regions = {name: end for name, end in land.ends.items() if isinstance(end, Inside)}
-    act = turn.executor.detour(node, [look.squares for look in looks], regions, turn.situation)
-    return _push_to_see(act, looks[0].what, turn)
+    push = turn.executor.detour(node, [look.squares for look in looks], regions, turn.situation)
+    return _push_to_see(push, looks[0].what, turn)
 
 
-def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision | None:
-    """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone."""
+def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision:
+    """Return the next command to take an object to a subgoal; nothing when the robot had better walk there alone."""
     advice = turn.executor.take_along(node, subgoal.squares, fetch, turn.situation)
     if isinstance(advice, Go):
         go = replace(advice, why=f"{node.name} is fetched, to be taken along: {subgoal.what}")
-        return with_command(turn.go(go))
+        return command_or_nothing(turn.go(go))
     return _push_to_see(advice, subgoal.what, turn)
 
 
-def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None:
-    """Return the decision to push a held object in order to see something; None when that would close a loop."""
-    if act is None or turn.closes_loop(act.command):
-        return None
-    turn.executor.depart(act)
-    return turn.act(act, f"{act.why}: {what}")
+def _push_to_see(advice: Advice, what: str, turn: StageTurn) -> Decision:
+    """Return the decision to push a held object in order to see something; nothing when that would close a loop."""
+    return turn.act_anew(advice, f"{advice.why}: {what}" if isinstance(advice, Act) else "")
 
 
-def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> Decision | None:
-    """Return the push with which a held object stays within some squares while the robot looks; None for none."""
+def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> Decision:
+    """Return the push with which a held object stays within some squares while the robot looks; nothing for none."""
     model = turn.situation.model
     if model.held != node.name:
-        return None
+        return nothing_to_do(f"{node.name} is not in hand")
     column, row = turn.situation.cost_maps.here
     rows, columns = np.nonzero(model.mask(node.patch))
     targets = [divmod(square, within.shape[1]) for square in look.squares.tolist()]
@@ -410,6 +398,7 @@ def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> De
         for ys, xs in moved
     ]
     if not any(inside):
-        return None
-    act = turn.executor.take_along(node, look.squares[np.array(inside)], False, turn.situation)
-    return _push_to_see(act if isinstance(act, Act) else None, look.what, turn)
+        return nothing_to_do(f"{node.name} would not stay where it is")
+    return _push_to_see(
+        turn.executor.take_along(node, look.squares[np.array(inside)], False, turn.situation), look.what, turn
+    )

@@ -43,17 +43,15 @@ class Trials:
     def go_on(self, turn: StageTurn) -> Decision:
         """Return the next command for the thing in hand that is moved by a square; nothing when that is done."""
         node = turn.situation.model.object(self._moving)
-        carried = None if node is None else carry_on(node, turn) or another_way(node, turn)
-        if carried is None:
+        carried = node and (carry_on(node, turn) or another_way(node, turn))
+        if not carried:
             gone, self._moving = self._moving, ""
-            return nothing_to_do(f"{gone} is no longer tried")
-        return carried
+        return carried or nothing_to_do(f"{gone} is no longer tried")
 
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to find out whether what seems one thing is several; nothing when nothing is left."""
         situation, scope = turn.situation, feeling_scope(turn)
-        felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)
-        if felt is not None:
+        if felt := feel_rims(unfelt_rims(situation.cost_maps, scope), turn):
             return felt
         # While walls are left that were never felt, the verdict rests on these.
         several = [] if walls_to_feel(turn).any() else things_in_question(situation.cost_maps, scope)
@@ -63,7 +61,7 @@ class Trials:
             moved = None if node.name in meant else another_way(node, turn)
             if node in several and node.name not in situation.binding.values() and not (node.moved or node.resisted):
                 moved = bring_to_end(node, ways, turn)  # by a square: it is seen to be one thing, or to be several
-            if moved is not None:
+            if moved:
                 self._moving = node.name
                 return moved
         return nothing_to_do("no thing is left to try")
@@ -75,8 +73,8 @@ def measure_gaps(
     node: Node,
     ends: Mapping[str, End],
     turn: StageTurn,
-    try_passage: Callable[[Infeasibility, Node, Mapping[str, End], StageTurn], Decision | None],
-) -> tuple[Infeasibility, Decision | None]:
+    try_passage: Callable[[Infeasibility, Node, Mapping[str, End], StageTurn], Decision],
+) -> tuple[Infeasibility, Decision]:
     """Return a refusal that counts with passages measured too narrow, and the next command to try or measure one."""
     # An object is pushed against a passage before that is measured: in the squares of a wall the robot's place is less
     # sure, and then pushes by parts of a square are.
@@ -85,7 +83,7 @@ def measure_gaps(
     gaps.note(len(turn.track), model)
     shut = np.zeros_like(model.space)
     while refused.unless():
-        if (trial := try_passage(refused, node, ends, turn)) is not None:
+        if trial := try_passage(refused, node, ends, turn):
             return refused, trial
         gap = gaps.gap_of(refused.passage, model)
         if gap is None or gap.width / cos(model.spread) >= least:
@@ -100,15 +98,15 @@ def measure_gaps(
         if again is None or not again.proved:
             break
         refused = again
-    return refused, None
+    return refused, nothing_to_do("no passage is left to measure")
 
 
-def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) -> Decision | None:
-    """Return the next command to measure a gap; None where the robot cannot go there."""
+def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) -> Decision:
+    """Return the next command to measure a gap; nothing where the robot cannot go there."""
     model = turn.situation.model
     why = f"how wide the passage for {node.name} is shows where its walls stop the robot"
     end = gaps.end_of_walk(gap, len(turn.track), model) if model.held is None else None
     if end is not None:
         return Decision(move_to(end, model), f"{why}; {turn.stage}")
     squares = np.flatnonzero(model.squares(gap.squares))
-    return turn.look_if_reached(Subgoal(SubgoalKind.ATTAIN, squares, why))
+    return turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, squares, why)])

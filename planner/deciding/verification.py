@@ -1,8 +1,8 @@
 """Goal verification and active perception: looks that make sure before the robot commits itself or claims something.
 
 They make sure of an object before it is carried, of the orientation of the frame, of a passage that is said to be too
-narrow, and of beliefs that the last impression contradicts. Each is a subgoal to go to first, or None where there is
-nothing to make sure of.
+narrow, and of beliefs that the last impression contradicts. Each is a list of subgoals, one of which is gone to first;
+[] where there is nothing to make sure of.
 """
 
 import math
@@ -41,68 +41,68 @@ class Verifier:
         """Return whether the robot has begun to look at an object, and it was not settled when that was asked last."""
         return node.name in self._unsettled
 
-    def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
-        """Return a look at an object that is not settled; None when no look is left that may tell more."""
+    def looks_at(self, node: Node, situation: Situation) -> list[Subgoal]:
+        """Return a look at an object that is not settled; [] when no look is left that may tell more."""
         self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
-            return None
-        look = inspection(situation.cost_maps, node, chance=1.0, to=TO_TAKE)
-        if not len(look.squares):
-            return None
-        self._unsettled.add(node.name)
-        return Subgoal(SubgoalKind.INSPECT, *look)
+            return []
+        found = _inspect(inspection(situation.cost_maps, node, chance=1.0, to=TO_TAKE))
+        self._unsettled |= {node.name} if found else set()
+        return found
 
-    def recheck_passage(self, refusal: Infeasibility, situation: Situation) -> Subgoal | None:
+    def recheck_passage(self, refusal: Infeasibility, situation: Situation) -> list[Subgoal]:
         """Return a look from close by at a passage that is said to be too narrow, while the map is not sure."""
-        # Returns None when the map is sure, no passage is named, or it was looked at again already, within FOVEA_RANGE
+        # Returns [] when the map is sure, no passage is named, or it was looked at again already, within FOVEA_RANGE
         # squares.
         model = situation.model
         neck = None if model.view.sure else refusal.neck()
         if neck is None:
-            return None
+            return []
         where = (neck[0] + model.view.west, neck[1] + model.view.south)
         near = frontiers.fovea_squares(situation.cost_maps, *where)
         if robot_stands_on(near, model):
             self._rechecked.append(where)
         if any(math.dist(where, looked) <= frontiers.FOVEA_RANGE for looked in self._rechecked):
-            return None
-        return Subgoal(SubgoalKind.INSPECT, near, "it is not sure that the passage is that narrow")
+            return []
+        return [Subgoal(SubgoalKind.INSPECT, near, "it is not sure that the passage is that narrow")]
 
 
-def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal | None:
+def looks_before_grasp(node: Node, turns: bool, situation: Situation) -> list[Subgoal]:
     """Return a look that tells the orientation of the frame, before an object is grasped."""
     model = situation.model
     if not (
         orientation_is_uncertain(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck
     ):
-        return None
+        return []
     what = "it is not clear how the squares of the map lie"
-    aside = frontiers.viewpoint_of(situation.cost_maps, model.mask(node.patch), what)
-    return Subgoal(SubgoalKind.INSPECT, *aside) if len(aside.squares) else None
+    return _inspect(frontiers.viewpoint_of(situation.cost_maps, model.mask(node.patch), what))
 
 
-def look_at_contradiction(situation: Situation) -> Subgoal | None:
-    """Return a look from elsewhere when the last impression contradicts what is believed; None when it does not."""
+def looks_at_contradiction(situation: Situation) -> list[Subgoal]:
+    """Return a look from elsewhere when the last impression contradicts what is believed; [] when it does not."""
     # What contradicts was withdrawn, so the new impression agrees with the rest if that is right.
     model = situation.model
     if not model.contradicted:
-        return None
+        return []
     what = "what is seen differs from what is believed"
-    look = frontiers.viewpoint_of(situation.cost_maps, robot_square(model), what)
-    return Subgoal(SubgoalKind.INSPECT, *look)
+    return [Subgoal(SubgoalKind.INSPECT, *frontiers.viewpoint_of(situation.cost_maps, robot_square(model), what))]
 
 
-def look_again(node: Node, situation: Situation) -> Subgoal | None:
-    """Return a look at an object that may lie elsewhere, as others or contradictions have it; None for no need."""
+def looks_again(node: Node, situation: Situation) -> list[Subgoal]:
+    """Return a look at an object that may lie elsewhere, as others or contradictions have it; [] for no need."""
     model, squares = situation.model, situation.model.mask(node.patch)
     if node.looked_at_again:
         what = f"others may have moved {node.name} since it was seen"
     elif node.moved and not _is_looked_at(squares, model):
         what = f"{node.name} was not seen closely since looks differed"
     else:
-        return None
-    look = frontiers.viewpoint_of(situation.cost_maps, squares, what)
-    return Subgoal(SubgoalKind.INSPECT, *look) if len(look.squares) else None
+        return []
+    return _inspect(frontiers.viewpoint_of(situation.cost_maps, squares, what))
+
+
+def _inspect(look: frontiers.Viewpoint) -> list[Subgoal]:
+    """Return a look as a subgoal; [] where it cannot be had from any square."""
+    return [Subgoal(SubgoalKind.INSPECT, *look)] if len(look.squares) else []
 
 
 def _is_looked_at(squares: Bools, model: WorldModel) -> bool:
@@ -117,34 +117,32 @@ def robot_square(model: WorldModel) -> Bools:
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
-def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
+def looks_for_more(node: Node, situation: Situation) -> list[Subgoal]:
     """Return where to feel how far an object goes that touches a wall or an object, or did not move when pushed."""
-    # Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it
+    # Returns [] when it was moved or is held, when it touches no wall and no other object, or when nothing about it
     # is to be felt (planner.sights.frontiers.rim_viewpoint).
     look = frontiers.rim_viewpoint(situation.cost_maps, node)
-    return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
+    return [] if look is None else [Subgoal(SubgoalKind.INSPECT, *look)]
 
 
 def check_elsewhere(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
     """Return what to see or feel next before something is said to be elsewhere than it began; [] when that is sure."""
-    unseen = unseen_beyond_door(goal, began, covered, situation)
-    if unseen is not None:
-        return [unseen]
     looks = unfelt_bounds(goal, began, covered, situation)
     # With something in hand, a push may show what is further away.
     nearest = islice(looks, 1 if situation.model.held is None else None)
-    return [Subgoal(SubgoalKind.INSPECT, *look) for look in nearest]
+    unseen = unseen_beyond_door(goal, began, covered, situation)
+    return unseen or [Subgoal(SubgoalKind.INSPECT, *look) for look in nearest]
 
 
-def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
-    """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure."""
+def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
+    """Return where to see how wide the floor is beyond a door, before something is said to be there; [] if sure."""
     model, view = situation.model, situation.model.view
     if goal.name == "around":
-        return None
+        return []
     closed = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
     rooms = rooms_of(replace(model, view=closed), situation.rules, model.verge | ~view.seen)
     if (situation.goal_rooms(goal, began, rooms, MIN_DOOR_CONFIDENCE) & covered).any():
-        return None
+        return []
     rows, columns = np.nonzero(covered)
 
     def distance(look: frontiers.Viewpoint) -> float:
@@ -153,4 +151,4 @@ def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situati
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
     nearest = min(frontiers.find_frontiers(situation.cost_maps, frontiers.VIEW_SPACING), key=distance, default=None)
-    return None if nearest is None else Subgoal(SubgoalKind.INSPECT, *nearest)
+    return [] if nearest is None else [Subgoal(SubgoalKind.INSPECT, *nearest)]

@@ -13,7 +13,7 @@ import numpy as np
 from utak.geometry.kernels.arrays import XY, Bools, Square
 from utak.geometry.raster.line_of_sight import straight
 from utak.geometry.raster.winding import crossings_by_step
-from utak.kb.body import Command, Move
+from utak.kb.body import Move
 from utak.kb.localisation.hypotheses.walk_outcomes import GRID_LINE_TOLERANCE, snap_to_line
 from utak.kb.perception.frame import turned
 from utak.kb.world.model import WorldModel
@@ -164,13 +164,11 @@ def is_at(model: WorldModel, place: XY) -> bool:
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
-def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Command | None:
-    """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`."""
-    if not isinstance(command, Move):
-        return command
-    dx, dy = model.frame.to_map(command.east, command.north)
+def halt_exactly_at(move: Move, place: XY, model: WorldModel) -> Move:
+    """Return a move with its end moved to exactly `place`, if it leads into the square of `place`."""
+    dx, dy = model.frame.to_map(move.east, move.north)
     if model.view.locate(model.place[0] + dx, model.place[1] + dy) != model.view.locate(*place):
-        return command
+        return move
     return move_to(place, model)
 
 

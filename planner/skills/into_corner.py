@@ -6,12 +6,14 @@ point where they do, until they stop it.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from utak.geometry.kernels.arrays import XY
-from utak.kb.body import Command, Move
+from utak.kb.body import Move
 from utak.kb.world.corners import Corner, known_floor
+from utak.planner.decision import Decision, nothing_to_do
 from utak.planner.goals.robot_goals import corner_side, wall_sides
 from utak.planner.screen.moves import halt_exactly_at, move_to, orientation_is_uncertain
 from utak.planner.screen.projection import CostMaps
@@ -41,8 +43,8 @@ class IntoCorner:
         here = _square_at(situation.model.place)
         return max(abs(there - at) for there, at in zip(self._pressing, here, strict=True)) <= math.ceil(PRESS_LENGTH)
 
-    def next(self, stage: Stage, situation: Situation) -> Command | None:
-        """Return the next move into the corners of a stage, and remember it; None when it is as near as can be."""
+    def next(self, stage: Stage, situation: Situation) -> Decision:
+        """Return the next move into the corners of a stage, and remember it; nothing when it is as near as can be."""
         model, here = situation.model, _square_at(situation.model.place)
         for side in () if orientation_is_uncertain(model) else [side for side in map(corner_side, stage.own) if side]:
             corner = situation.corners[side]
@@ -50,14 +52,15 @@ class IntoCorner:
             x, y = halting_place(corner, situation)
             there = here == _map_square(corner, situation)
             if there and math.dist((x, y), model.place) > 2 * HALT_DISTANCE and self._note_first(here, 0, 0):
-                return move_to((x, y), model)
+                return _into((x, y), stage, situation)
             if there and lies_straight(corner, situation):
                 continue
             for dx, dy in (sx, sy), (sx, 0), (0, sy):
                 if self._note_first(here, dx, dy):
                     self._pressing = _map_square(corner, situation)
-                    return move_to((model.place[0] + PRESS_LENGTH * dx, model.place[1] + PRESS_LENGTH * dy), model)
-        return None
+                    end = model.place[0] + PRESS_LENGTH * dx, model.place[1] + PRESS_LENGTH * dy
+                    return _into(end, stage, situation)
+        return nothing_to_do("the robot is as near as it can be")
 
     def _note_first(self, square: Square, dx: int, dy: int) -> bool:
         """Note a move from a square, and return whether it is the first such move there."""
@@ -66,21 +69,29 @@ class IntoCorner:
         return not known
 
 
+def _into(place: XY, stage: Stage, situation: Situation) -> Decision:
+    """Return the move to a place in the square of a corner."""
+    why = f"the walls of the corner may lie further away; {stage}"
+    return Decision(move_to(place, situation.model), why)
+
+
 def halting_place(corner: Corner, situation: Situation) -> XY:
     """Return where in the square of a corner the robot halts: the point right beside its outer lines."""
     view, (column, row), (sx, sy) = situation.model.view, corner.square, wall_sides(corner)
     return view.west + column + 0.5 + sx * (0.5 - HALT_DISTANCE), view.south + row + 0.5 + sy * (0.5 - HALT_DISTANCE)
 
 
-def halt_beside_walls(command: Command | None, stage: Stage, situation: Situation) -> Command | None:
+def halt_beside_walls(decision: Decision, stage: Stage, situation: Situation) -> Decision:
     """Return a move that ends in the square of a stage's corner, changed to end right beside the walls."""
-    # All other commands and None are returned as they are, and so are moves that would then lead over squares that are
-    # not safe.
+    # All other decisions are returned as they are, and so are moves that would then lead over squares that are not
+    # safe.
     side = next((side for side in map(corner_side, stage.own) if side), "")
-    if not isinstance(command, Move) or side not in situation.corners or orientation_is_uncertain(situation.model):
-        return command
+    if side not in situation.corners or orientation_is_uncertain(situation.model):
+        return decision
     place = halting_place(situation.corners[side], situation)
-    return halt_exactly_at(command, place, situation.model) if _is_safe_line(place, situation.cost_maps) else command
+    if not isinstance(decision.command, Move) or not _is_safe_line(place, situation.cost_maps):
+        return decision
+    return replace(decision, command=halt_exactly_at(decision.command, place, situation.model))
 
 
 def lies_straight(corner: Corner, situation: Situation) -> bool:

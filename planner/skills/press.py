@@ -59,10 +59,12 @@ class Presser:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
             self._left, self._last = list(land.presses.values()), None
 
-    def next(self, node: Node, model: WorldModel) -> Act | None:
-        """Return the next press as a push that no plan asks for, and remember it; None when none is left."""
-        if not self._left or self._of is None or self._of[1] != node.name:
-            return None
+    def has_next(self, node: Node) -> bool:
+        """Return whether a press of an object is left."""
+        return bool(self._left) and self._of is not None and self._of[1] == node.name
+
+    def next(self, node: Node, model: WorldModel) -> Act:
+        """Return the next press that is left as a push that no plan asks for, and remember it."""
         push = self._left.pop(0)
         self._last, self._is_new = (push, (node.polygon.centroid.x, node.polygon.centroid.y)), True
         why = f"{node.name} is pressed against the wall, to be sure that it is there"

@@ -52,7 +52,7 @@ def halt_chosen(places: Sequence[FeelingPlace], situation: Situation) -> Subgoal
 def test_walls_are_felt_until_none_is_left() -> None:
     model = known_model(ROOM)
     assert isinstance(getattr(feel_walls(turn_of(UTAK, situation_of(model))), "command", None), Move)
-    assert feel_walls(turn_of(UTAK, situation_of(all_felt(model)))) is None
+    assert not feel_walls(turn_of(UTAK, situation_of(all_felt(model))))
     assert halt_chosen([], situation_of(model)) is None
 
 

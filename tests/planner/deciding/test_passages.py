@@ -35,7 +35,7 @@ def test_each_line_through_the_wall_is_walked_once() -> None:
     for _ in range(80):
         turn = turn_of(WALK, situation_of(model), tools)
         decision = passages.next(turn)
-        if decision is None:
+        if not decision:
             break
         assert isinstance(decision.command, Move)
         east, north = decision.command.east, decision.command.north
@@ -57,7 +57,7 @@ def test_each_line_through_the_wall_is_walked_once() -> None:
 
 def test_no_walk_where_no_floor_is_seen_beyond() -> None:
     one = [*TWO[:3], "b" + "." * 14 + "b", *TWO[4:]]
-    assert Passages().next(turn_of(WALK, all_felt_situation(one))) is None
+    assert not Passages().next(turn_of(WALK, all_felt_situation(one)))
 
 
 def all_felt_situation(rows: list[str]) -> Situation:

@@ -21,7 +21,7 @@ from utak.planner.advice import Act, Go
 from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
-from utak.planner.carrying.preconditions import needed_view
+from utak.planner.carrying.preconditions import needed_views
 from utak.planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import TaskVerdict
@@ -179,11 +179,11 @@ def test_an_object_that_would_be_grasped_again_from_here_is_not_released(aside: 
 def test_a_square_that_narrows_the_way_of_a_long_plan_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
     situation = doubtful(beside(()), 8.5, 3.5, chance)
     view, (node,) = situation.model.view, situation.model.objects
-    see = needed_view(plan_over(situation, 8.5, 1.5, pushes), node, situation)
-    assert (see is not None) == looks
-    if see is not None:
+    views = needed_views(plan_over(situation, 8.5, 1.5, pushes), node, situation)
+    assert bool(views) == looks
+    for see in views:
         place = view.locate(8.5, 3.5)
-        rows, columns = np.divmod(see.viewpoint.squares, view.state.shape[1])
+        rows, columns = np.divmod(see.squares, view.state.shape[1])
         assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= FOVEA_RANGE
 
 
@@ -194,7 +194,7 @@ def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
     situation = doubtful(beside(()), 8.5, 1.5, 0.2)
     (node,) = situation.model.objects
     plan = plan_over(situation, 8.5, 1.5, pushes, taken)
-    assert (needed_view(plan, node, situation) is not None) == looks
+    assert bool(needed_views(plan, node, situation)) == looks
 
 
 @pytest.mark.parametrize("lost", [False, True])

@@ -26,9 +26,9 @@ from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.verification import (
     Verifier,
     check_elsewhere,
-    look_again,
-    look_at_contradiction,
-    look_before_grasp,
+    looks_again,
+    looks_at_contradiction,
+    looks_before_grasp,
     unseen_beyond_door,
 )
 from utak.planner.goals.bounds import unfelt_bounds
@@ -82,9 +82,9 @@ def test_the_orientation_of_the_frame_is_looked_at_before_an_object_is_turned_or
     looked = frozenset((x, 0) for x in range(looks))
     model = replace(known_model(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
-    subgoal = look_before_grasp(replace(node, resisted=("north",) * stuck), turns, situation_of(model))
-    assert (subgoal is not None) == first
-    if subgoal is not None:
+    looks_first = looks_before_grasp(replace(node, resisted=("north",) * stuck), turns, situation_of(model))
+    assert bool(looks_first) == first
+    for subgoal in looks_first:
         assert "how the squares of the map lie" in subgoal.what
         assert len(subgoal.squares)
 
@@ -101,23 +101,23 @@ def test_a_narrow_passage_on_an_unsure_map_is_looked_at_from_close_by(sure: bool
     assert refusal.proved
     assert neck == pytest.approx((15, 7), abs=1.0)
     verifier = Verifier()
-    first = verifier.recheck_passage(refusal, situation_of(model))
-    assert (first is None) == sure
-    if first is None:
+    looks = verifier.recheck_passage(refusal, situation_of(model))
+    assert bool(looks) != sure
+    if sure:
         return
+    (first,) = looks
     rows, columns = np.divmod(first.squares, model.labels.shape[1])
     assert max(np.abs(columns + 0.5 - neck[0]).max(), np.abs(rows + 0.5 - neck[1]).max()) <= FOVEA_RANGE
     x, y = columns[0] + model.view.west + 0.5, rows[0] + model.view.south + 0.5
     there = situation_of(replace(model, place=(float(x), float(y))))
-    assert verifier.recheck_passage(refusal, there) is None
-    assert verifier.recheck_passage(refusal, situation_of(model)) is None  # it need not be looked at again
+    assert not verifier.recheck_passage(refusal, there)
+    assert not verifier.recheck_passage(refusal, situation_of(model))  # it need not be looked at again
 
 
 def test_after_a_contradiction_the_robot_looks_from_elsewhere_near_by() -> None:
-    assert look_at_contradiction(situation_of(stood_in(BESIDE_A_THING, False))) is None
+    assert looks_at_contradiction(situation_of(stood_in(BESIDE_A_THING, False))) == []
     model = stood_in(BESIDE_A_THING, True)
-    subgoal = look_at_contradiction(situation_of(model))
-    assert subgoal is not None
+    (subgoal,) = looks_at_contradiction(situation_of(model))
     away = np.abs(squares_from(model, subgoal.squares)).max(1)
     assert len(away)
     assert away.min() > 0
@@ -131,19 +131,19 @@ def test_what_was_moved_is_seen_from_close_by_again_after_a_contradiction() -> N
     moved = replace(model, objects=(replace(node, moved=True),), looked_from=frozenset({here, far}))
     for looked, again in (({here, far}, False), ({here}, False), ({far}, True), (set(), True)):
         situation = situation_of(replace(moved, looked_since=frozenset(looked)))
-        found = look_again(situation.model.objects[0], situation)
-        assert (found is not None) == again, looked
+        found = looks_again(situation.model.objects[0], situation)
+        assert bool(found) == again, looked
     unmoved = situation_of(replace(model, looked_from=frozenset({here})))
-    assert look_again(node, unmoved) is None
+    assert looks_again(node, unmoved) == []
 
 
 @pytest.mark.parametrize("again", [False, True])
 def test_what_others_may_have_moved_is_looked_at_again(again: bool) -> None:
     model = known_model(BESIDE_A_THING)
     node = replace(model.objects[0], looked_at_again=again)
-    found = look_again(node, situation_of(replace(model, objects=(node,))))
-    assert (found is not None) == again
-    assert found is None or f"others may have moved {node.name}" in found.what
+    found = looks_again(node, situation_of(replace(model, objects=(node,))))
+    assert bool(found) == again
+    assert all(f"others may have moved {node.name}" in look.what for look in found)
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
@@ -258,5 +258,5 @@ def test_the_mouth_of_an_arm_is_no_door_while_squares_beyond_are_unseen(goal: Fa
 def test_a_floor_that_is_seen_to_be_wide_is_another_room() -> None:
     situation = situation_of(walked(NEXT, [*WAY, (10, 2)]).model)
     covered = situation.model.squares([(24, -10), (25, -10)])
-    assert unseen_beyond_door(IN_NEXT_ROOM, (0.5, 5.0), covered, situation) is None
+    assert unseen_beyond_door(IN_NEXT_ROOM, (0.5, 5.0), covered, situation) == []
     assert situation.goal_rooms(IN_NEXT_ROOM, (0.5, 5.0), situation.rooms, MIN_DOOR_CONFIDENCE)[covered].all()

@@ -9,6 +9,7 @@ from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import situation_of
 from utak.kb.body import Grasp, Move
+from utak.planner.decision import Decision
 from utak.planner.situation import Situation
 from utak.planner.skills.into_corner import (
     HALT_DISTANCE,
@@ -36,31 +37,36 @@ def test_a_move_into_the_square_of_a_corner_ends_beside_its_outer_lines() -> Non
     situation = standing(STRAIGHT_ROOM, 0.0, 0.0)
     x, y = halting_place(situation.corners["northeast"], situation)
     assert (x, y) == pytest.approx((5.0 - HALT_DISTANCE, 4.0 - HALT_DISTANCE))
-    command = halt_beside_walls(Move(4.0, 3.0), NORTHEAST, situation)
+    command = beside_walls(Move(4.0, 3.0), NORTHEAST, situation)
     assert isinstance(command, Move) and (command.east, command.north) == pytest.approx((x - 0.5, y - 0.5))
     assert halting_place(situation.corners["southwest"], situation) == pytest.approx(
         (-1.0 + HALT_DISTANCE, -1.0 + HALT_DISTANCE)
     )
 
 
+def beside_walls(command: Move | Grasp | None, stage: Stage, situation: Situation) -> object:
+    """Return the command that is given in place of one."""
+    return halt_beside_walls(Decision(command, ""), stage, situation).command
+
+
 @pytest.mark.parametrize("command", [Move(3.0, 3.0), Grasp("east"), None])
 def test_other_commands_are_kept(command: Move | Grasp | None) -> None:
-    assert halt_beside_walls(command, NORTHEAST, standing(STRAIGHT_ROOM, 0.0, 0.0)) == command
+    assert beside_walls(command, NORTHEAST, standing(STRAIGHT_ROOM, 0.0, 0.0)) == command
 
 
 def test_a_move_for_another_goal_is_kept() -> None:
     stage = Stage(facts_from_text("at(utak, start)."))
-    assert halt_beside_walls(Move(4.0, 3.0), stage, standing(STRAIGHT_ROOM, 0.0, 0.0)) == Move(4.0, 3.0)
+    assert beside_walls(Move(4.0, 3.0), stage, standing(STRAIGHT_ROOM, 0.0, 0.0)) == Move(4.0, 3.0)
 
 
 def test_from_the_middle_of_the_square_the_robot_goes_up_to_the_lines_once() -> None:
     leading, situation = IntoCorner(), standing(STRAIGHT_ROOM, 4.0, 3.0)
-    command = leading.next(NORTHEAST, situation)
+    command = leading.next(NORTHEAST, situation).command
     assert isinstance(command, Move) and (command.east, command.north) == pytest.approx(
         (0.5 - HALT_DISTANCE, 0.5 - HALT_DISTANCE)
     )
-    assert leading.next(NORTHEAST, situation) is None
-    assert IntoCorner().next(NORTHEAST, standing(STRAIGHT_ROOM, 4.5 - HALT_DISTANCE, 3.5 - HALT_DISTANCE)) is None
+    assert not leading.next(NORTHEAST, situation)
+    assert not IntoCorner().next(NORTHEAST, standing(STRAIGHT_ROOM, 4.5 - HALT_DISTANCE, 3.5 - HALT_DISTANCE))
 
 
 def test_walls_along_the_grid_are_told_from_others() -> None:
@@ -77,7 +83,7 @@ def test_the_robot_presses_against_askew_walls_once_from_each_square() -> None:
     there = replace(situation, model=replace(situation.model, place=place))
     leading = IntoCorner()
     assert not leading.is_pressing(NORTHEAST, there)
-    moves = [leading.next(NORTHEAST, there) for _ in range(4)]
+    moves = [leading.next(NORTHEAST, there).command for _ in range(4)]
     assert [(m.east, m.north) for m in moves if isinstance(m, Move)] == [
         (PRESS_LENGTH, PRESS_LENGTH),
         (PRESS_LENGTH, 0.0),
@@ -85,7 +91,7 @@ def test_the_robot_presses_against_askew_walls_once_from_each_square() -> None:
     ]
     assert moves[3] is None and leading.is_pressing(NORTHEAST, there)
     further = replace(situation, model=replace(situation.model, place=(place[0], place[1] + 1.0)))
-    assert leading.is_pressing(NORTHEAST, further) and leading.next(NORTHEAST, further) is not None
+    assert leading.is_pressing(NORTHEAST, further) and leading.next(NORTHEAST, further)
     assert not leading.is_pressing(SOUTHWEST, there)
     away = replace(situation, model=replace(situation.model, place=(place[0] - 3.0, place[1])))
     assert not leading.is_pressing(NORTHEAST, away)
@@ -95,5 +101,5 @@ def test_the_robot_presses_against_askew_walls_once_from_each_square() -> None:
 def test_while_the_frame_is_open_the_robot_does_not_halt_beside_lines() -> None:
     situation = standing(STRAIGHT_ROOM, 4.0, 3.0)
     unsure = replace(situation, model=replace(situation.model, likely_spread=math.pi))
-    assert IntoCorner().next(NORTHEAST, unsure) is None
-    assert halt_beside_walls(Move(4.0, 3.0), NORTHEAST, unsure) == Move(4.0, 3.0)
+    assert not IntoCorner().next(NORTHEAST, unsure)
+    assert beside_walls(Move(4.0, 3.0), NORTHEAST, unsure) == Move(4.0, 3.0)

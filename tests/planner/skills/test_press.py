@@ -43,10 +43,10 @@ def test_each_press_is_given_once_and_an_object_stopped_by_all_is_pressed() -> N
     presser.begin(GOAL, node, LAND, situation)
     for way in (ACROSS, UP):
         act = presser.next(node, situation.model)
-        assert act is not None and act.command == Push(way.dx, way.dy)
+        assert act.command == Push(way.dx, way.dy)
         node = moved(node, 0.3 * way.dx, 0.3 * way.dy)
         assert presser.is_pressed(GOAL, node, situation)
-    assert presser.next(node, situation.model) is None
+    assert not presser.has_next(node)
     assert presser.is_pressed(GOAL, node, situation)
 
 
@@ -92,9 +92,9 @@ def test_presses_are_given_for_the_object_that_is_pressed_alone() -> None:
     situation, node = holding()
     presser = Presser()
     presser.begin(GOAL, node, LAND, situation)
-    assert presser.next(replace(node, name="another"), situation.model) is None
-    act = presser.next(node, situation.model)
-    assert act is not None and act.command == Push(ACROSS.dx, ACROSS.dy)
+    assert not presser.has_next(replace(node, name="another"))
+    assert presser.has_next(node)
+    assert presser.next(node, situation.model).command == Push(ACROSS.dx, ACROSS.dy)
     assert presser.is_pressed(GOAL, moved(node, 0.3, 0.0), situation)
 
 

@@ -22,6 +22,7 @@ from utak.kb.mapping.patch import Patch
 from utak.kb.objects.movability import way_of
 from utak.kb.world.model import Node
 from utak.planner.advice import Act, See
+from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
 from utak.planner.carrying.remaining_plan import RemainingPlan
 from utak.planner.deciding.transport import Transporter
@@ -210,13 +211,14 @@ def test_an_object_that_did_not_move_one_way_is_led_out_another_way() -> None:
     situation, node = in_a_nook([*NOOK, *["b" + "." * 14 + "b"] * 6, "b" * 16])
     executor = PlanExecutor(pull=True)
     led = executor.lead_out(replace(node, resisted=("north",)), situation)
-    assert led is not None
+    assert isinstance(led, Act)
     assert led.command == Push(-1.0, 0.0)
     otherwise = executor.lead_out(replace(node, resisted=("west",)), situation)
-    assert otherwise is not None
+    assert isinstance(otherwise, Act)
     assert isinstance(otherwise.command, Push)
     assert way_of(otherwise.command) != "west"
-    assert executor.lead_out(replace(node, resisted=DIRECTIONS), situation) is None
+    none = executor.lead_out(replace(node, resisted=DIRECTIONS), situation)
+    assert isinstance(none, Infeasibility) and not none.proved
 
 
 def at_a_loss(situation: Situation) -> Decision:
@@ -311,18 +313,18 @@ def test_a_detour_takes_the_place_of_pushes_but_not_of_turns(
     executor = PlanExecutor(pull, plan=plan)
     assert isinstance(executor.continue_plan(node, situation), Act)
     act = executor.detour(node, [at(situation, (4, 5))], {}, situation)
-    assert (act is not None) == (taken and pull)
-    if act is not None:
+    assert isinstance(act, Act) == (taken and pull)
+    if isinstance(act, Act):
         assert act.command == Push(4.0, 5.0)
         assert (
             executor.detour(node, [at(situation, (4, 5))], {}, situation) == act
         )  # the plan is kept until the push is given
         executor.depart(act)
-        assert executor.continue_plan(node, situation) is None  # another plan is made from there
+        assert isinstance(executor.continue_plan(node, situation), Infeasibility)  # another plan is made from there
 
 
 def test_there_is_no_detour_with_an_object_that_is_not_held() -> None:
     situation, node = holding()
     leg = Leg((0.5, 0.5), (1, 0), (Translate(9.0, 4.0),))
     executor = PlanExecutor(plan=RemainingPlan(node.name, "northeast", node.polygon, (leg,), node.patch, 0))
-    assert executor.detour(node, [at(situation, (4, 5))], {}, situation) is None
+    assert isinstance(executor.detour(node, [at(situation, (4, 5))], {}, situation), Infeasibility)
