@@ -82,7 +82,7 @@ class Pursuer:
         ways_by_price = by_dearest_door(situation)
         ruled, refused = are_ruled(situation), list[RefusedEnd]()
         while True:
-            offered = [_priced(one, ways_by_price)[0] for one in self._circles.priced(subgoals, model)]
+            offered = [_priced(one, ways_by_price)[0] for one in self._circles.counted(subgoals, model)]
             if fewest is not None:
                 offered = fewest.priced(offered)
             if refused:
@@ -90,7 +90,7 @@ class Pursuer:
             last, question = self._kept.subgoal(model), situation.question
             chosen = choose(offered, situation.cost_maps, last, question, situation.rooms)
             if isinstance(chosen, NoSubgoal):
-                missed, circled = missing(), len(offered) < len(subgoals) and not refused
+                missed, circled = missing(), any(one.in_vain for one in offered) and not refused
                 whys = [one.why for one in refused]
                 whys += [forbidden_by(chosen.rules, "every place to go to")] * bool(chosen.rules)
                 if whys:

@@ -1,7 +1,7 @@
 """Loop detection: the same command in the same state of belief leads where it led before.
 
-Then the walk has not shown what it was made for, and the robot would make it again. So the subgoal that leads there
-becomes dearer, until another one is chosen. A subgoal that is chosen all the same is given up until more is known.
+Then the walk has not shown what it was made for, and the robot would make it again. It is counted how often that was so
+for a subgoal, until more is known; planner/asp/deciding/subgoals.lp says what follows.
 """
 
 from collections import Counter
@@ -15,8 +15,6 @@ from utak.kb.world.model import WorldModel
 from utak.planner.navigation.sticky_route import to_map_squares
 from utak.planner.navigation.subgoals import Subgoal
 
-LOOP_COST = 25.0  # squares by which each loop makes a subgoal dearer (tuned on random worlds)
-MAX_LOOPS = 4  # loops after which a subgoal is given up (tuned on random worlds)
 STATE_DIGITS = 3  # decimals of places and commands, in squares or degrees; smaller differences count as none
 StateKey = tuple[object, ...]
 
@@ -44,20 +42,17 @@ class LoopGuard:
         """Count one more loop for a subgoal with these squares (x, y) of the map frame."""
         self._loops.update(squares)
 
-    def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
-        """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS."""
+    def counted(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
+        """Return the subgoals, each with how often it led in a loop, as far as what is known is the same."""
         known = _knowledge(model)
         if known != self._known:
             self._known = known
             self._loops.clear()
         if not self._loops:
             return list(subgoals)
-        found = []
-        for subgoal in subgoals:
-            times = max((self._loops[square] for square in to_map_squares(subgoal.squares, model)), default=0)
-            if times < MAX_LOOPS:
-                found.append(subgoal._replace(price=subgoal.price + LOOP_COST * times))
-        return found
+        squares = (to_map_squares(subgoal.squares, model) for subgoal in subgoals)
+        times = [max((self._loops[square] for square in there), default=0) for there in squares]
+        return [one._replace(in_vain=often) for one, often in zip(subgoals, times, strict=True)]
 
 
 def _knowledge(model: WorldModel) -> StateKey:

@@ -1,4 +1,4 @@
-"""Loops are detected, and subgoals that lead in loops become dearer."""
+"""Loops are detected, and counted for the subgoals that lead in them."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import numpy as np
 from tests.kb.drawings import known_model
 from tests.planner.screen.test_projection import HALL
 from utak.kb.body import Move, Push, Release
-from utak.planner.navigation.loop_guard import LOOP_COST, LoopGuard
+from utak.planner.navigation.loop_guard import LoopGuard
 from utak.planner.navigation.subgoals import Subgoal
 
 MODEL = known_model(HALL)
@@ -34,15 +34,14 @@ def test_more_knowledge_or_another_place_makes_no_loop() -> None:
     assert not guard.noticed(replace(MODEL, view=MODEL.view._replace(state=state)), Move(1.0, 0.0))
 
 
-def test_a_subgoal_that_leads_in_loops_becomes_dearer_and_is_given_up() -> None:
+def test_loops_are_counted_for_each_subgoal_until_more_is_known() -> None:
     guard = LoopGuard()
     row, column = MODEL.view.locate(2.5, 0.5)
     there = Subgoal("explore", np.array([row * MODEL.labels.shape[1] + column]), "")
     other = Subgoal("explore", there.squares + 1, "")
-    assert guard.priced([there, other], MODEL) == [there, other]
-    guard.tire(frozenset({(2, 0)}))
-    dearer, same = guard.priced([there, other], MODEL)
-    assert (dearer.price, same.price) == (LOOP_COST, 0.0)
-    for _ in range(9):
+    assert guard.counted([there, other], MODEL) == [there, other]
+    for times in (1, 2):
         guard.tire(frozenset({(2, 0), (900, 900)}))
-    assert guard.priced([there, other], MODEL) == [other]
+        assert [one.in_vain for one in guard.counted([there, other], MODEL)] == [times, 0]
+    more = replace(MODEL, barred=frozenset({(3, 3)}))
+    assert guard.counted([there, other], more) == [there, other]
