@@ -93,6 +93,6 @@ def done(why: str) -> Decision:
     return Decision(None, why, TaskVerdict.DONE)
 
 
-def command_or_nothing(decision: Decision) -> Decision:
-    """Return a decision that has a command; that nothing is to be done, for the same reason, in place of a verdict."""
-    return decision if decision.command is not None else nothing_to_do(decision.why)
+def command_or_nothing(decision: Decision, why: str = "") -> Decision:
+    """Return a decision that has a command; that nothing is to be done, for the same reason or another, for others."""
+    return decision if decision.command is not None else nothing_to_do(why or decision.why)

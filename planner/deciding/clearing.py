@@ -106,7 +106,8 @@ class ObstacleClearer:
     def _pull(self, turn: StageTurn) -> Decision:
         """Return the next command to move what may go on in a wall; nothing for no such thing."""
         parting = feeling_scope(turn).parting
-        return self._move_first_of(hidden_in_walls(self._movable(turn.situation), turn.situation, parting), turn)
+        found = self._move_first_of(hidden_in_walls(self._movable(turn.situation), turn.situation, parting), turn)
+        return found or nothing_to_do("nothing that may go on in a wall can be moved")
 
     def _movable(self, situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside, in the order of the model; [] for none."""
@@ -127,7 +128,7 @@ class ObstacleClearer:
             if instead := _move_aside(one.node, one.aside, turn.within(one.situation)):
                 self._moving, self._supposed = one.node.name, one.supposed
                 return instead
-        return nothing_to_do("nothing that is in the way can be moved aside")
+        return nothing_to_do("nothing that blocks the robot's way can be moved aside")
 
 
 def _how_often_tried(node: Node) -> str:

@@ -86,7 +86,7 @@ def walls_to_feel(turn: StageTurn) -> Bools:
 def feel_walls(turn: StageTurn) -> Decision:
     """Return the next command to feel walls that may be things; nothing when none is left that can be reached."""
     places = feeling_places(turn.situation.cost_maps, feeling_scope(turn))
-    return command_or_nothing(turn.seek(halts(places, turn.situation)))
+    return command_or_nothing(turn.seek(halts(places, turn.situation)), "nothing is left to feel")
 
 
 def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision:
@@ -100,7 +100,7 @@ def feel_rim(node: Node, turn: StageTurn) -> Decision:
         return nothing_to_do(f"it is known how far {node.name} goes")
     near = dilate(turn.situation.model.mask(node.patch), 2).ravel()
     places = [p for p in feeling_places(turn.situation.cost_maps) if WallKind.THING in p.squares and near[p.square]]
-    return command_or_nothing(turn.seek(halts(places, turn.situation)))
+    return command_or_nothing(turn.seek(halts(places, turn.situation)), f"nothing is left to feel of {node.name}")
 
 
 def halts(places: Sequence[FeelingPlace], situation: Situation) -> list[Subgoal]:
