@@ -22,7 +22,7 @@ from utak.planner.carrying.open_facts import proof_if_not_found
 from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
-from utak.planner.deciding.trials import measure_gaps
+from utak.planner.deciding.trials import measure_gaps, step_back
 from utak.planner.deciding.verification import looks_before_grasp, looks_for_more
 from utak.planner.decision import Decision, TaskVerdict, command_or_nothing, done, impossible, nothing_to_do
 from utak.planner.goals.corner_goal import approach_for_goals
@@ -68,6 +68,8 @@ class Transporter:
 
     def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
+        if self._gaps.is_at_wall(len(turn.track)):  # nothing comes between: a look from there would tell another place
+            return step_back(self._gaps, turn)
         node = turn.situation.object_of(str(goal.args[0]))
         if node is None:
             return self._freed(self._find(goal, turn), goal, turn)

@@ -28,6 +28,8 @@ from utak.planner.skills.measure_gap import GapMeasurer, PassageRow
 from utak.planner.skills.measure_size import least_outline
 from utak.planner.subgoal_kind import SubgoalKind
 
+GAP_REASON = "how wide a passage is shows where its walls stop the robot"
+
 
 class Trials:
     """Finds out whether what seems one thing is several, and remembers which thing is moved for that."""
@@ -101,12 +103,17 @@ def measure_gaps(
     return refused, nothing_to_do("no passage is left to measure")
 
 
+def step_back(gaps: GapMeasurer, turn: StageTurn) -> Decision:
+    """Return the move of a robot that has walked against a side of a gap a little back from it."""
+    model = turn.situation.model
+    return Decision(move_to(gaps.step_back(len(turn.track), model), model), f"{GAP_REASON}; {turn.stage}")
+
+
 def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) -> Decision:
     """Return the next command to measure a gap; nothing where the robot cannot go there."""
     model = turn.situation.model
-    why = f"how wide the passage for {node.name} is shows where its walls stop the robot"
     end = gaps.end_of_walk(gap, len(turn.track), model) if model.held is None else None
     if end is not None:
-        return Decision(move_to(end, model), f"{why}; {turn.stage}")
+        return Decision(move_to(end, model), f"{GAP_REASON}; {turn.stage}")
     squares = np.flatnonzero(model.squares(gap.squares))
-    return turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, squares, why)])
+    return turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, squares, GAP_REASON)])

@@ -78,20 +78,28 @@ class GapMeasurer:
                 if not _is_from_wall_to_wall(line, model):
                     break
                 gaps[across] = PassageRow(tuple((x + model.view.west, y + model.view.south) for x, y in line[1:-1]))
-        return min(gaps.values(), key=lambda gap: self.is_exact(gap) is not True, default=None)
+        return min(gaps.values(), key=lambda gap: (True, None, False).index(self.is_exact(gap)), default=None)
 
     def is_exact(self, gap: PassageRow) -> bool | None:
         """Return whether a gap is as wide as its squares and at most STEP_BACK on each side; None while not known."""
         sides = [self._exact.get((gap.squares[side], side)) for side in (0, -1)]
         return False if False in sides else None if None in sides else True
 
+    def is_at_wall(self, looks: int) -> bool:
+        """Return whether the newest command, after which there were so many looks, led against a side of a gap."""
+        return self._walk is not None and not self._walk.back and self._walk.looks + 1 == looks
+
+    def step_back(self, looks: int, model: WorldModel) -> XY:
+        """Return where the robot, which stands against a side of a gap, shall walk to, map frame."""
+        assert self._walk is not None
+        (x, y), walk = model.place, self._walk
+        self._walk = walk._replace(looks=looks, back=True)
+        return x - STEP_BACK * walk.step[0], y - STEP_BACK * walk.step[1]
+
     def end_of_walk(self, gap: PassageRow, looks: int, model: WorldModel) -> XY | None:
         """Return where the robot shall walk to from within a gap, map frame; None while it is not there."""
         # looks : how many there were.
-        (x, y), walk = model.place, self._walk
-        if walk is not None:  # it stands against the wall now
-            self._walk = walk._replace(looks=looks, back=True)
-            return x - STEP_BACK * walk.step[0], y - STEP_BACK * walk.step[1]
+        x, y = model.place
         leeway = max(map(abs, model.leeway))
         astray = abs((y if gap.step[0] else x) % 1 - 0.5) > OFF_MIDDLE
         if _square(model.place) not in gap.squares or astray or leeway > MAX_LEEWAY:
@@ -108,14 +116,13 @@ class GapMeasurer:
         """Note whether the newest walk, when it was one back from a wall, ended in the last square of the row."""
         if model.anew and not self._is_anew:
             self._is_anew, self._walk, self._exact = True, None, {}
-        walk = self._walk
-        if walk is None or (walk.looks + 1 == looks and not walk.back):
+        walk, self._walk = self._walk, None
+        if walk is None:
             return
-        sure = walk.looks + 1 == looks and model.view.sure and not (model.lost or model.contradicted)
+        sure = walk.back and walk.looks + 1 == looks and model.view.sure and not (model.lost or model.contradicted)
         beyond = walk.square[0] + walk.step[0], walk.square[1] + walk.step[1]
         inside = _feels_from(walk.square, model) and not _feels_from(beyond, model)
         self._exact[walk.square, walk.side] = sure and inside
-        self._walk = None
 
 
 def _feels_from(square: Square, model: WorldModel) -> bool:
