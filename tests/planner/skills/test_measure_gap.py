@@ -1,8 +1,13 @@
 """Passages that the robot measures: what is surely too wide for one is told so, and what is not is never."""
 
+from dataclasses import replace
+
 import pytest
 
 import utak
+from tests.kb.drawings import known_model
+from utak.geometry.cspace.bottleneck import Bottleneck
+from utak.planner.skills.measure_gap import STEP_BACK, GapMeasurer
 
 
 def rooms(south: str, north: str) -> utak.Scenario:
@@ -23,7 +28,40 @@ def test_what_is_measured_too_narrow_is_impossible_and_what_fits_is_not(south: s
     episode = utak.Run(rooms(south, north), max_steps=120).finish()
     if float(north) - float(south) < 4:
         assert episode.verdict == "impossible" and "too narrow" in episode.reason
-        measured = [step for step in episode if "how wide the passage" in step.line["why"]]
+        measured = [step for step in episode if "how wide a passage" in step.line["why"]]
         assert len(measured) <= 5  # to the door, against each side and back from it
     else:
         assert episode.verdict not in ("impossible",)
+
+
+DOOR = [
+    "bbbbbbbbbbbbbb",
+    "b.....bb.....b",
+    "b.....bb.....b",
+    "b.....bb.....b",
+    "b............b",
+    "b..U.........b",
+    "b.....bb.....b",
+    "b.....bb.....b",
+    "bbbbbbbbbbbbbb",
+]
+
+
+def test_the_step_back_from_a_wall_comes_next_and_another_row_is_measured_where_it_does_not() -> None:
+    model = known_model(DOOR)
+    row, column = model.view.locate(*model.place)
+    wall = column + 3
+    sides = (float(wall), float(row)), (float(wall), float(row + 2))
+    passage, gaps = Bottleneck((float(wall), row + 1.0), sides, 2.0), GapMeasurer()
+    first = gaps.gap_of(passage, model)
+    assert first is not None and len(first.squares) == 2 and not gaps.is_at_wall(1)
+    inside = replace(model, touch=(None,) * 8, place=(first.squares[0][0] + 0.5, first.squares[0][1] + 0.5))
+    end = gaps.end_of_walk(first, 1, inside)
+    assert end is not None and end[1] < first.squares[0][1]
+    assert gaps.is_at_wall(2) and not gaps.is_at_wall(3)
+    assert gaps.step_back(2, inside) == pytest.approx((inside.place[0], inside.place[1] + STEP_BACK))
+    assert not gaps.is_at_wall(3)
+    gaps.note(4, inside)  # something else was done between
+    assert gaps.is_exact(first) is False
+    other = gaps.gap_of(passage, model)
+    assert other is not None and other != first and gaps.is_exact(other) is None
