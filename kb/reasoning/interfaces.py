@@ -316,6 +316,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("verdict", 1): (VERDICT_ARGUMENT,),
         ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
         ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
+        ("in_vain", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
         ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
         **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "choose", "walked")},
         ("goes_to", 2): (NUMBER_ARGUMENT, PLAN_ROOM_ARGUMENT),
