@@ -9,8 +9,9 @@ from math import cos
 import numpy as np
 
 from utak.geometry.cspace.bottleneck import least_gap
-from utak.geometry.manipulation.goals import At, End
+from utak.geometry.manipulation.goals import At, End, Inside
 from utak.geometry.motion.se2 import Pose
+from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.terms import Fact
 from utak.kb.objects.movability import square_ways
 from utak.kb.world.model import Node
@@ -22,12 +23,15 @@ from utak.planner.decision import Decision, nothing_to_do
 from utak.planner.goals.placement import lies_clear_of
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import move_to
+from utak.planner.screen.projection import dilate
 from utak.planner.sights.things import things_in_question, unfelt_rims
 from utak.planner.situation import Situation
 from utak.planner.skills.measure_gap import GapMeasurer, PassageRow
 from utak.planner.skills.measure_size import least_outline
 from utak.planner.subgoal_kind import SubgoalKind
 
+ROOM_BEFORE = 2  # squares about a passage that are cleared for the robot to come into it; a convention
+AWAY_FROM_GAP = "aside"  # the end of a plan that brings away what stands before a passage
 GAP_REASON = "how wide a passage is shows where its walls stop the robot"
 
 
@@ -110,10 +114,15 @@ def step_back(gaps: GapMeasurer, turn: StageTurn) -> Decision:
 
 
 def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) -> Decision:
-    """Return the next command to measure a gap; nothing where the robot cannot go there."""
+    """Return the next command to measure a gap, or to bring away what stands before it; nothing for no way there."""
     model = turn.situation.model
     end = gaps.end_of_walk(gap, len(turn.track), model) if model.held is None else None
     if end is not None:
         return Decision(move_to(end, model), f"{GAP_REASON}; {turn.stage}")
-    squares = np.flatnonzero(model.squares(gap.squares))
-    return turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, squares, GAP_REASON)])
+    squares = model.squares(gap.squares)
+    there = turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, np.flatnonzero(squares), GAP_REASON)])
+    near, thing = dilate(squares, ROOM_BEFORE), model.mask(node.patch)
+    if there or not (near & thing).any():
+        return there
+    away = Inside(mask_to_polygon((turn.situation.cost_maps.free(0) | thing) & ~near))
+    return bring_to_end(node, {AWAY_FROM_GAP: away}, turn, f"{GAP_REASON}, and {node.name} stands before it: ")
