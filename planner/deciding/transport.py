@@ -68,6 +68,7 @@ class Transporter:
 
     def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
+        self._gaps.note(len(turn.track), turn.situation.model)
         if self._gaps.is_at_wall(len(turn.track)):  # nothing comes between: a look from there would tell another place
             return step_back(self._gaps, turn)
         node = turn.situation.object_of(str(goal.args[0]))

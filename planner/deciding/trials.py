@@ -86,7 +86,6 @@ def measure_gaps(
     # sure, and then pushes by parts of a square are.
     situation, least = turn.situation, least_gap(least_outline(node))
     model = situation.model
-    gaps.note(len(turn.track), model)
     shut = np.zeros_like(model.space)
     while refused.unless():
         if trial := try_passage(refused, node, ends, turn):

@@ -116,6 +116,8 @@ class GapMeasurer:
         """Note whether the newest walk, when it was one back from a wall, ended in the last square of the row."""
         if model.anew and not self._is_anew:
             self._is_anew, self._walk, self._exact = True, None, {}
+        if self.is_at_wall(looks):
+            return
         walk, self._walk = self._walk, None
         if walk is None:
             return
