@@ -261,6 +261,7 @@ REPLAY = (
         )
     ),
     value("--kb", "FILE", "with --html: a file of rules of the run; repeatable", action="append", default=[]),
+    value("--certificate", "FILE", "with --html: a certificate, which the page draws and checks"),
     flag("--force", "overwrite a file that is no page or picture"),
 )
 VERIFY = (

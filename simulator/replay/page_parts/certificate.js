@@ -288,6 +288,17 @@ const checkCertificate = (() => {
       return true;
     }
 
+    // What a case settles, for whoever draws it: the angle, the squares by key, where the robot stands at each step (bounds in
+    // each axis), and the squares that were felt as verge.
+    drawn(one) {
+      const inSquares = (interval) => interval.map((value) => Number((value * 1000000n) / this.unit) / 1e6);
+      return {
+        degrees: one.degrees, settled: one.settled,
+        places: one.ways.map((way, k) => both((a) => inSquares(cut(plus(one.waking[a], way[a]), this.side(one.squares[k][a]))))),
+        verge: [...this.felt(one).values()].filter(({ colours }) => colours.has("b")).map(({ at }) => at),
+      };
+    }
+
     // ---- what a case shows
 
     // Squares that were felt for sure up to the last step of a case, with the colours.
@@ -454,7 +465,7 @@ const checkCertificate = (() => {
           need(word === "holds" && values.length === 0, `${at}there is no such line`);
           need(one.squares.length === world.steps.length, `${at}commands are left`);
           need(holds(one), `${at}this case does not show the goals`);
-          shown.push(one);
+          shown.push(world.drawn(one));
           done();
         }
       }
@@ -485,16 +496,18 @@ const checkCertificate = (() => {
       shown = readCases(cases, world, along ? 1 : 90, (one) => shows(world, one, wanted.counted, meaning));
     }
     const claimed = claim === "done" ? `done: ${wanted.counted.map(({ text }) => text).join(", ")}` : `impossible: ${task.goals.join(", ")}`;
-    return { accepted: true, says: claimed + (given.length ? `, given ${given.join(", ")}` : ""), shown };
+    const touches = Object.entries(meaning).map(([name, [step, touch]]) => ({ name, step, offset: TOUCHES[touch] }));
+    return { accepted: true, says: claimed + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
   }
 
-  // Returns { accepted, says: what is shown, or why it is refused; shown: the cases that show it }.
+  // Returns { accepted, says: what is shown, or why it is refused; shown: the cases that show it, as `drawn` has them; touches:
+  // what was felt of the objects of the goals }.
   return (episodeText, certificateText) => {
     try {
       return checked(episodeText, certificateText);
     } catch (error) {
-      if (error instanceof Refused) return { accepted: false, says: error.message, shown: [] };
-      return { accepted: false, says: `the episode or the certificate is damaged: ${error.message}`, shown: [] };
+      if (error instanceof Refused) return { accepted: false, says: error.message, shown: [], touches: [] };
+      return { accepted: false, says: `the episode or the certificate is damaged: ${error.message}`, shown: [], touches: [] };
     }
   };
 })();
