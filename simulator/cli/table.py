@@ -224,12 +224,14 @@ QUERY = (
     *SETTINGS,
 )
 PLAN = (STORY, at("the step whose plan is shown (0: on waking)"), flag("--json", "print the plan as one JSON object"))
+TOLD_CERTIFICATE = value("--certificate", "FILE", "a certificate of the run, which is told with its verdict")
 DEPTHS = ("short", "mid", "long")  # kb.evidence.reason.Depth, which every command would load here
 EXPLAIN = (
     STORY,
     value("fact", "FACT", "a fact, a goal or verdict(V); without it the command of the step", nargs="?"),
     value("--whynot", "FACT", "why a fact is not believed: what is missing or in the way"),
     value("--cell", "N", "a cell of the impression of the step, 0 to 159", _cell),
+    TOLD_CERTIFICATE,
     at("the step (default: the last)"),
     value("--depth", None, "how much of the tree is printed (default mid)", choices=DEPTHS, default="mid"),
     flag("--json", "print the whole tree as one JSON object"),
@@ -337,7 +339,7 @@ SUBCOMMANDS = (
         "that has steps left is shown. Where no plan attains all goals, those that none attains, what was refuted and "
         "the steps that settle what is open are shown as far as they are known, and the exit code is 1.",
     ),
-    Subcommand("repl", "repl", "step through a run and ask what Utak believes", [STORY, *SETTINGS]),
+    Subcommand("repl", "repl", "step through a run and ask what Utak believes", [STORY, TOLD_CERTIFICATE, *SETTINGS]),
     Subcommand("explain", "explain", "tell why: a fact, a command, a verdict, a cell of an impression", EXPLAIN),
     Subcommand(
         "replay",

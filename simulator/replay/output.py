@@ -50,7 +50,7 @@ def write_page(
     )
 
     lacking = missing_rules(episode.header, rule_files)
-    page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name, certificate)
+    page = replay_page(episode, trees_of_episode(episode, rule_files, certificate), lacking, name, certificate)
     write_whole(path, page.encode("utf-8"), is_page, PAGE_KIND, force)
     return lacking
 
