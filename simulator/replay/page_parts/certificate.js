@@ -417,14 +417,15 @@ const checkCertificate = (() => {
     }));
     need(new Set(colours.values()).size === colours.size, "two objects mean one letter");
     for (const { kind, of, step, text } of named) need(kind !== "felt" || meaning[of][0] === step, `${text} is not felt at its step`);
-    return { given: claimsOf(episode.header.task, colours), counted };
+    return { given: claimsOf(episode.header.task, colours), counted, says: counted.map(({ text }) => text).join(", ") };
   }
 
   function checkImpossible({ steps, meaning }, episode, goals) {
     need(same(steps, [episode.steps.length - 1]), "impossible is shown of the last step");
     need(isObject(meaning) && Object.keys(meaning).length === 0, "impossible means nothing");
-    need(goals.some(({ word, leaves }) => word !== "prefer" && leaves), "certificates show of none of these goals that it is impossible");
-    return { given: ["whole(squares)", "isolated(things)"], counted: null };
+    const barred = goals.find(({ word, leaves }) => word !== "prefer" && leaves);
+    need(barred, "certificates show of none of these goals that it is impossible");
+    return { given: ["whole(squares)", "isolated(things)"], counted: null, says: barred.text };
   }
 
   // Whether a case shows what is claimed.
@@ -495,9 +496,8 @@ const checkCertificate = (() => {
       need(why === null, why);
       shown = readCases(cases, world, along ? 1 : 90, (one) => shows(world, one, wanted.counted, meaning));
     }
-    const claimed = claim === "done" ? `done: ${wanted.counted.map(({ text }) => text).join(", ")}` : `impossible: ${task.goals.join(", ")}`;
     const touches = Object.entries(meaning).map(([name, [step, touch]]) => ({ name, step, offset: TOUCHES[touch] }));
-    return { accepted: true, says: claimed + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
+    return { accepted: true, says: `${claim}: ${wanted.says}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
   }
 
   // Returns { accepted, says: what is shown, or why it is refused; shown: the cases that show it, as `drawn` has them; touches:
