@@ -5,7 +5,7 @@
 const checkCertificate = (() => {
   // Numbers of the episode are decimals, and turned vectors are irrational. Both stand as integers of one unit, a part of a
   // square, so sums and comparisons are exact; cosines are rounded after their last digit, below 1e-60.
-  const ONE = 10n ** 60n, GUARD = 10n ** 4n, FINE = ONE * GUARD, MAX_DECIMALS = 400, MAX_SQUARES = 1e5;
+  const ONE = 10n ** 60n, GUARD = 10n ** 4n, FINE = ONE * GUARD, MAX_DECIMALS = 400, MAX_SQUARES = 20000;
   const PI = 31415926535897932384626433832795028841971693993751058209749445923n; // in units of 1 / FINE
   const TOUCHES = [[0, 1], [1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1]];
   const DIRECTIONS = ["north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest"];
@@ -17,7 +17,7 @@ const checkCertificate = (() => {
   const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
   const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value) && !(value instanceof Decimal);
 
-  // ---- JSON, with numbers as they are written, and no key twice
+  // ---- JSON, with numbers as they are written
 
   class Decimal {
     constructor(text) { this.text = text; }
@@ -59,7 +59,6 @@ const checkCertificate = (() => {
         const key = next()[2];
         if (key === undefined) throw new SyntaxError(`no key before character ${at}`);
         const name = JSON.parse(key);
-        if (name in object) throw new SyntaxError(`the key ${name} stands twice`);
         sign(":");
         object[name] = value();
       });
@@ -177,9 +176,7 @@ const checkCertificate = (() => {
     const { options } = header;
     if (decimal(options.noise)[0] !== 0n) return "the run is noisy";
     if ("forked" in header || "changes" in header || !same(options.kb, [])) return "the run was forked, changed or had rules of its own";
-    if (steps.some((line) => "disturbed" in line)) return "others moved things";
-    const takes = ({ action }, k) => action && action.do === "grasp" && steps[k - 1].touch[DIRECTIONS.indexOf(action.direction)] !== null;
-    return steps.some(takes) ? "a grasp may have taken something" : null;
+    return steps.some((line) => "disturbed" in line) ? "others moved things" : null;
   }
 
   // ---- cases
@@ -187,71 +184,119 @@ const checkCertificate = (() => {
   class World {
     constructor(episode) {
       this.steps = episode.steps;
-      const moves = episode.steps.map(({ action }) => (action && action.do === "move" ? [decimal(action.east), decimal(action.north)] : [[0n, 0], [0n, 0]]));
-      const places = Math.max(...moves.flat().map(([, count]) => count)); // of all moves: one unit for all
-      this.moves = moves.map((move) => move.map(([digits, count]) => digits * 10n ** BigInt(places - count)));
+      const leads = (action) => action && (action.do === "move" || action.do === "push");
+      const vectors = episode.steps.map(({ action }) => (leads(action) ? [decimal(action.east), decimal(action.north)] : [[0n, 0], [0n, 0]]));
+      const places = Math.max(...vectors.flat().map(([, count]) => count)); // of all commands: one unit for all
+      this.vectors = vectors.map((vector) => vector.map(([digits, count]) => digits * 10n ** BigInt(places - count)));
       this.unit = ONE * 10n ** BigInt(places);
       this.tiny = this.unit / 10n ** 6n;
     }
     side(number) { return [BigInt(number) * this.unit, BigInt(number + 1) * this.unit]; }
+    box(square) { return both((a) => this.side(square[a])); }
     begin(degrees) {
-      return { degrees, squares: [[0, 0]], waking: both(() => this.side(0)), ways: [both(() => [0n, 0n])], swept: [[]], settled: new Map() };
+      return { degrees, squares: [[0, 0]], places: [this.box([0, 0])], swept: [[]], held: [[]], changes: new Map(), settled: new Map() };
     }
 
-    // Where a command may have ended: the squares that are swept, and new squares, way and waking boxes by square.
-    ends(degrees, k, square, waking, way, settled) {
-      const [e, n] = this.moves[k], { c, s } = turned(degrees), v = [e * c - n * s, e * s + n * c], { unit, tiny } = this;
-      if (v[0] === 0n && v[1] === 0n) return { swept: [], found: new Map([[keyOf(square), { square, waking, way }]]) };
-      const box = both((a) => cut(grown(plus(waking[a], way[a]), 2n * tiny), this.side(square[a])));
-      const lines = both((a) => hull(box[a], moved(box[a], v[a])));
-      const across = ([x, y]) => plus(times(x, -v[1]), times(y, v[0])), [low, high] = across(box); // how far to the side of v
-      const swept = squaresUnder(lines, unit).filter((one) => {
-        const [right, left] = across(both((a) => this.side(one[a])));
-        return right < high && left > low;
-      });
-      const barred = new Set(swept.map(keyOf).filter((key) => settled.get(key) !== false));
-      const ways = new Map();
-      const ended = (reach, itsWay) => {
-        for (const one of squaresUnder(reach, unit)) {
-          const key = keyOf(one), known = ways.get(key);
-          ways.set(key, { square: one, way: known ? both((a) => hull(known.way[a], itsWay[a])) : itsWay });
-        }
-      };
-      ended(both((a) => grown(moved(box[a], v[a]), tiny)), both((a) => moved(way[a], v[a])));
-      const leads = both((a) => (v[a] > 0n ? [0, 1] : v[a] < 0n ? [0, -1] : [0]));
-      for (const one of swept) {
-        if (!leads[0].some((i) => leads[1].some((j) => barred.has(keyOf(from(one, [i, j])))))) continue;
-        const part = both((a) => cut(this.side(one[a]), lines[a]));
-        const itsWay = both((a) => cut(hull(way[a], moved(way[a], v[a])), grown(minus(part[a], waking[a]), tiny)));
-        if (!isEmpty(itsWay)) ended(both((a) => (v[a] === 0n ? grown(part[a], tiny) : part[a])), itsWay);
-      }
-      const found = new Map();
-      for (const [key, { square: one, way: its }] of ways) {
-        const sides = both((a) => grown(this.side(one[a]), tiny)), kept = both((a) => cut(its[a], minus(sides[a], waking[a])));
-        const left = both((a) => cut(waking[a], minus(sides[a], kept[a])));
-        if (!isEmpty(kept) && !isEmpty(left)) found.set(key, { square: one, way: kept, waking: left });
-      }
-      return { swept: swept.map(keyOf), found };
+    // ---- what is settled: of a square from one change to the next
+
+    // The steps from which on something is settled of a square by itself: 0, and those at which it was changed, up to a step.
+    times(one, square, step = this.steps.length) { return [0, ...(one.changes.get(keyOf(square)) || []).filter((k) => k <= step)]; }
+    at(one, square, step) { return one.settled.get(`${keyOf(square)},${this.times(one, square, step).at(-1)}`); }
+    settle(one, square, step, occupied) { one.settled.set(`${keyOf(square)},${this.times(one, square, step).at(-1)}`, occupied); }
+    wasFree(one, square) { return this.times(one, square).some((k) => one.settled.get(`${keyOf(square)},${k}`) === false); }
+
+    // The square of a touch; null where that is not sure.
+    touched(one, [k, t]) {
+      const sample = turned(one.degrees).touches[t];
+      return sample && from(one.squares[k], sample);
     }
+
+    // Squares in which all lies of what a touch felt, at its step.
+    piece(one, [k, t]) {
+      if ([null, "b"].includes(this.steps[k].touch[t])) return [];
+      const first = this.touched(one, [k, t]);
+      need(first, "it is not sure which square was touched");
+      const found = new Map([[keyOf(first), first]]);
+      for (const square of found.values()) { // grows while it is gone through
+        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
+          const next = from(square, offset);
+          if (!found.has(keyOf(next)) && this.at(one, next, k) !== false) found.set(keyOf(next), next);
+        }
+        need(found.size <= MAX_SQUARES, "what was touched may reach too far");
+      }
+      return [...found.values()];
+    }
+
+    // ---- commands
 
     // The cases after a case's next command, by square.
     following(one) {
-      const k = one.squares.length;
+      const k = one.squares.length, square = one.squares.at(-1), place = one.places.at(-1), { unit, tiny } = this;
       need(k < this.steps.length, "no command is left");
-      const { swept, found } = this.ends(one.degrees, k, one.squares.at(-1), one.waking, one.ways.at(-1), one.settled);
-      return new Map([...found].map(([key, { square, waking, way }]) => [key, { ...one, waking, settled: new Map(one.settled), squares: [...one.squares, square], ways: [...one.ways, way], swept: [...one.swept, swept] }]));
+      const { action } = this.steps[k], held = one.held.at(-1).filter((other) => this.at(one, other, k - 1) !== false);
+      need(held.length === 0 || ["push", "release"].includes(action.do), "what may be held is neither pushed nor released");
+      const [e, n] = action.do === (held.length ? "push" : "move") ? this.vectors[k] : [0n, 0n], { c, s } = turned(one.degrees);
+      const v = [e * c - n * s, e * s + n * c], isLed = v.some((part) => part !== 0n);
+      const after = (end, itsPlace, swept, itsHeld) => {
+        const next = {
+          degrees: one.degrees, squares: [...one.squares, end], places: [...one.places, itsPlace], swept: [...one.swept, swept],
+          held: [...one.held, itsHeld], changes: new Map(one.changes), settled: new Map(one.settled),
+        };
+        if (!isLed || !held.length) return next;
+        const before = new Set(one.held.at(-1).map(keyOf)), changed = new Map([...held, ...itsHeld].map((other) => [keyOf(other), other]));
+        for (const [key, other] of changed) next.changes.set(key, [...(one.changes.get(key) || []), k]);
+        for (const [key, other] of changed) if (!before.has(key) && this.at(one, other, k - 1)) this.settle(next, other, k, true);
+        return next;
+      };
+      if (!isLed) {
+        const taken = action.do === "grasp" ? this.piece(one, [k - 1, DIRECTIONS.indexOf(action.direction)]) : action.do === "release" ? [] : held;
+        return new Map([[keyOf(square), after(square, place, [], taken)]]);
+      }
+      const lines = both((a) => hull(place[a], moved(place[a], v[a])));
+      const across = ([x, y]) => plus(times(x, -v[1]), times(y, v[0])), [low, high] = across(place); // how far to the side of v
+      const swept = squaresUnder(lines, unit).filter((one) => {
+        const [right, left] = across(this.box(one));
+        return right < high && left > low;
+      });
+      const barred = new Set(swept.filter((other) => this.at(one, other, k - 1) !== false).map(keyOf));
+      const ends = new Map();
+      const ended = (box) => {
+        for (const end of squaresUnder(box, unit)) {
+          const known = ends.get(keyOf(end));
+          ends.set(keyOf(end), { end, box: known ? both((a) => hull(known.box[a], box[a])) : box });
+        }
+      };
+      ended(both((a) => grown(moved(place[a], v[a]), tiny)));
+      const ahead = both((a) => (v[a] > 0n ? [0, 1] : v[a] < 0n ? [0, -1] : [0]));
+      for (const other of swept) {
+        if (!held.length && !ahead[0].some((i) => ahead[1].some((j) => barred.has(keyOf(from(other, [i, j])))))) continue;
+        ended(both((a) => grown(cut(this.side(other[a]), lines[a]), v[a] === 0n ? tiny : 0n)));
+      }
+      const sweptKeys = swept.map(keyOf);
+      return new Map([...ends].map(([key, { end, box }]) => {
+        const itsPlace = both((a) => cut(box[a], this.side(end[a])));
+        return [key, after(end, itsPlace, sweptKeys, held.length ? this.carried(one, itsPlace) : [])];
+      }));
     }
 
-    // Works a case's ways out again; whether it still stands.
-    replay(one) {
-      for (let k = 1; k < one.squares.length; k += 1) {
-        const { swept, found } = this.ends(one.degrees, k, one.squares[k - 1], one.waking, one.ways[k - 1], one.settled);
-        const end = found.get(keyOf(one.squares[k]));
-        if (!end) return false;
-        one.waking = end.waking;
-        one.ways[k] = end.way;
-        one.swept[k] = swept;
+    // Squares in which all lies of what was taken by the last grasp, once the robot is in a place.
+    carried(one, place) {
+      const k = this.steps.findLastIndex(({ action }, step) => step < one.squares.length && action && action.do === "grasp");
+      const by = both((a) => grown(minus(place[a], one.places[k][a]), this.tiny)), found = new Map();
+      for (const square of one.held[k].filter((other) => this.at(one, other, k) !== false)) {
+        for (const other of squaresUnder(both((a) => plus(this.side(square[a]), by[a])), this.unit)) found.set(keyOf(other), other);
       }
+      return [...found.values()];
+    }
+
+    // Works a case's places out again; whether it still stands.
+    replay(one) {
+      let again = { ...this.begin(one.degrees), settled: one.settled };
+      for (const square of one.squares.slice(1)) {
+        again = this.following(again).get(keyOf(square));
+        if (!again) return false;
+      }
+      Object.assign(one, { places: again.places, swept: again.swept });
       return true;
     }
 
@@ -266,7 +311,7 @@ const checkCertificate = (() => {
         const samples = turned(one.degrees).fields[f], [least, most] = countsOf(this.steps[k].retina[f], samples.length).map(BigInt);
         const sure = samples.filter((sample) => sample !== null), doubtful = BigInt(samples.length - sure.length);
         for (const sample of sure) {
-          const key = keyOf(from(one.squares[k], sample));
+          const square = from(one.squares[k], sample), key = `${keyOf(square)},${this.times(one, square, k).at(-1)}`;
           weights.set(key, (weights.get(key) || 0n) + m);
         }
         low += m > 0n ? m * (least - doubtful) : m * most;
@@ -288,58 +333,65 @@ const checkCertificate = (() => {
       return true;
     }
 
-    // What a case settles, for whoever draws it: the angle, the squares by key, where the robot stands at each step (bounds in
-    // each axis), and the squares that were felt as verge.
+    // What a case settles, for whoever draws it: the angle, the squares that are occupied or free at a step, where the robot is at
+    // each step (bounds in each axis), and the squares that were felt as verge.
     drawn(one) {
       const inSquares = (interval) => interval.map((value) => Number((value * 1000000n) / this.unit) / 1e6);
+      const squares = [...new Set([...one.settled.keys()].map((key) => key.replace(/,\d+$/, "")))].map((key) => key.split(",").map(Number));
       return {
-        degrees: one.degrees, settled: one.settled,
-        places: one.ways.map((way, k) => both((a) => inSquares(cut(plus(one.waking[a], way[a]), this.side(one.squares[k][a]))))),
-        verge: [...this.felt(one).values()].filter(({ colours }) => colours.has("b")).map(({ at }) => at),
+        degrees: one.degrees, places: one.places.map((place) => place.map(inSquares)),
+        settled: (step, occupied) => squares.filter((square) => this.at(one, square, step) === occupied),
+        verge: [...this.felt(one).values()].filter(({ colour }) => colour === "b").map(({ square }) => square),
       };
     }
 
     // ---- what a case shows
 
-    // Squares that were felt for sure up to the last step of a case, with the colours.
+    // Squares that were felt for sure, with the colour of the last touch.
     felt(one) {
       const found = new Map();
-      one.squares.forEach((square, k) => turned(one.degrees).touches.forEach((sample, t) => {
-        if (sample === null) return;
-        const at = from(square, sample), key = keyOf(at);
-        if (!found.has(key)) found.set(key, { at, colours: new Set() });
-        found.get(key).colours.add(this.steps[k].touch[t]);
+      one.squares.forEach((_, k) => TOUCHES.forEach((_, t) => {
+        const square = this.touched(one, [k, t]);
+        if (square) found.set(keyOf(square), { square, colour: this.steps[k].touch[t] });
       }));
+      return found;
+    }
+
+    // Squares that the thing of a touch covers at a step for sure.
+    covered(one, [k, t], step) {
+      const square = this.touched(one, [k, t]), found = [];
+      if (square && k <= step && !this.times(one, square, step).some((time) => time > k)) found.push(square);
+      const { action } = this.steps[k + 1] || {};
+      if (!action || action.do !== "grasp" || DIRECTIONS[t] !== action.direction || k + 1 > step) return found;
+      let last = k;
+      while (last < step && one.held[last + 1].length) last += 1;
+      for (const key of one.changes.keys()) {
+        const other = key.split(",").map(Number), times = this.times(one, other, step), now = times.at(-1);
+        const wasFree = times.some((time, n) => n + 1 < times.length && times[n + 1] > k + 1 && one.settled.get(`${key},${time}`) === false);
+        if (now > k + 1 && now <= last && this.at(one, other, step) && wasFree) found.push(other);
+      }
       return found;
     }
 
     atCorner(one, step, [a, b]) {
       const { c, s } = turned(one.degrees), u = BigInt(a) * c - BigInt(b) * s, v = BigInt(a) * s + BigInt(b) * c;
       if (u === 0n || v === 0n) return false;
-      const reach = ([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n)), [i, j] = one.squares[step], limit = reach([i, j]);
-      const settled = (x, y) => one.settled.get(keyOf([x, y]));
-      if (settled(i, j) !== false || settled(i + (u > 0n ? 1 : -1), j) !== true || settled(i, j + (v > 0n ? 1 : -1)) !== true) return false;
-      return one.squares.slice(0, step + 1).every((square, k) => reach(square) <= limit && turned(one.degrees).fields.every((samples, f) => {
+      const reach = ([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n)), square = one.squares[step], limit = reach(square);
+      const held = new Set(one.held[step].map(keyOf)), ahead = [from(square, [u > 0n ? 1 : -1, 0]), from(square, [0, v > 0n ? 1 : -1])];
+      if (!this.wasFree(one, square) || !ahead.every((other) => this.at(one, other, step) && !held.has(keyOf(other)))) return false;
+      return one.squares.slice(0, step + 1).every((passed, k) => reach(passed) <= limit && turned(one.degrees).fields.every((samples, f) => {
         if (f === OWN) return true;
-        const further = samples.filter((sample) => sample !== null && reach(from(square, sample)) > limit).length;
+        const further = samples.filter((sample) => sample !== null && reach(from(passed, sample)) > limit).length;
         return further <= countsOf(this.steps[k].retina[f], samples.length)[1];
       }));
     }
 
-    atStart(one, step) {
-      return same(one.squares[step], [0, 0]) || one.ways[step].every(([low, high]) => low >= -this.unit && high <= this.unit);
-    }
-
-    circled(one, step, [k, t]) {
-      const track = one.ways.slice(0, step + 1), sample = turned(one.degrees).touches[t];
-      if (sample === null || !track.every((way) => way.every(([low, high]) => low === high)) || track.at(-1).some(([low]) => low !== 0n)) return false;
-      const square = from(one.squares[k], sample), key = keyOf(square);
-      if (one.swept.slice(0, step + 1).some((keys) => keys.includes(key)) || one.squares.slice(0, step + 1).some((other) => keyOf(other) === key)) return false;
-      const [x, y] = both((a) => { // twice: middles are whole units then
-        const [low, high] = this.side(square[a]), [first, last] = one.waking[a];
-        return low + high - first - last;
-      });
-      const points = track.map(([[east], [north]]) => [2n * east - x, 2n * north - y]);
+    circled(one, step, touch) {
+      const square = this.touched(one, touch), key = square && keyOf(square), start = [0, 0];
+      const passed = [...one.swept.slice(0, step + 1).flat(), ...one.squares.slice(0, step + 1).map(keyOf)];
+      if (!square || passed.includes(key) || one.changes.has(key) || !same(one.squares[step], start) || this.at(one, start, step) !== false) return false;
+      const [x, y] = square.map((number) => BigInt(2 * number + 1) * this.unit); // all twice: middles are whole units then
+      const points = one.places.slice(0, step + 1).map(([[west, east], [south, north]]) => [west + east - x, south + north - y]);
       let winds = 0;
       for (let n = 0; n < points.length; n += 1) {
         const [[x0, y0], [x1, y1]] = [points[n], points[(n + 1) % points.length]], side = x0 * y1 - x1 * y0;
@@ -350,34 +402,35 @@ const checkCertificate = (() => {
       return winds !== 0;
     }
 
-    shutIn(one) {
-      const felt = this.felt(one), verge = [...felt.values()].filter(({ colours }) => colours.has("b")).map(({ at }) => at);
-      const [[west, east], [south, north]] = both((a) => [Math.min(...verge.map((at) => at[a])), Math.max(...verge.map((at) => at[a]))]);
-      if (!(verge.length && west < 0 && east > 0 && south < 0 && north > 0)) return false;
-      const isVerge = new Set(verge.map(keyOf)), onFrame = (i, j) => i === west || i === east || j === south || j === north;
-      if (!verge.every(([i, j]) => onFrame(i, j))) return false;
-      for (let i = west; i <= east; i += 1) {
-        for (let j = south; j <= north; j += 1) {
-          const key = keyOf([i, j]), ends = (i === west || i === east) && (j === south || j === north);
-          const inside = !onFrame(i, j) && (i === west + 1 || i === east - 1 || j === south + 1 || j === north - 1);
-          if (onFrame(i, j) && !ends && !isVerge.has(key)) return false;
-          if (inside && one.settled.get(key) !== false && !felt.has(key)) return false;
-        }
-      }
-      return true;
+    // Whether a frame [W, S, E, N] shuts the robot in, or the thing of a touch.
+    shutIn(one, frame, touch) {
+      if (frame.length !== 4 || !frame.every((number) => Number.isInteger(number) && Math.abs(number) <= MAX_SQUARES)) return false;
+      const [west, south, east, north] = frame, felt = this.felt(one), colourOf = (square) => felt.get(keyOf(square))?.colour;
+      const piece = touch ? this.piece(one, touch) : [[0, 0]], solid = new Set(piece.map(keyOf));
+      if (touch && (one.held.slice(0, touch[0] + 1).some((held) => held.length) || !piece.every((square) => this.at(one, square, touch[0])))) return false;
+      if (!piece.every(([i, j]) => west < i && i < east && south < j && j < north)) return false;
+      const upTo = (first, last, of) => Array.from({ length: Math.max(last - first + 1, 0) }, (_, n) => of(first + n));
+      const isSolid = ([i, j], size) => upTo(i, i + size - 1, (x) => upTo(j, j + size - 1, (y) => solid.has(keyOf([x, y])))).flat().every(Boolean);
+      let widest = 0;
+      while (piece.some((square) => isSolid(square, widest + 1))) widest += 1;
+      const ring = (by) => [[west + by, east - by].map((i) => upTo(south + 1, north - 1, (j) => [i, j])), [south + by, north - by].map((j) => upTo(west + 1, east - 1, (i) => [i, j]))].flat();
+      const wall = new RegExp(`^(#\\.{0,${widest - 1}})*#$`);
+      if (widest === 0 || !ring(0).every((side) => wall.test(side.map((square) => (colourOf(square) === "b" ? "#" : ".")).join("")))) return false;
+      return ring(1).flat().every((square) => this.wasFree(one, square) || (felt.has(keyOf(square)) && colourOf(square) !== "b"));
     }
   }
 
   // ---- goals
 
-  // What a goal asks for: { word, kind, of }; kind is null where certificates show nothing of it.
+  // What a goal asks for: { word, kind, what, of }; kind is null where certificates show nothing of it.
   function goalOf(text) {
     const [, word, goal] = /^(first|then|prefer)\((.*)\)$/.exec(text) || [null, "", text];
-    const corner = /^at\(utak,corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\(utak,([a-z]\w*)\)$/.exec(goal);
-    if (corner && corner[1] in CORNERS) return { text, word, kind: "corner", of: corner[1] };
-    if (goal === "at(utak,start)") return { text, word, kind: "start" };
-    if (thing) return { text, word, kind: thing[1] === "circled" ? "circled" : "felt", of: thing[2] };
-    return { text, word, kind: null, leaves: goal === "in(utak,room(next))" || /^through\(utak,\w+\)$/.test(goal) };
+    const corner = /^at\(utak,corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\(([a-z]\w*),([a-z]\w*)\)$/.exec(goal);
+    const [, leaves] = /^in\((\w+),room\(next\)\)$/.exec(goal) || /^through\((\w+),\w+\)$/.exec(goal) || [];
+    if (corner && corner[1] in CORNERS) return { text, word, kind: "corner", what: "utak", of: corner[1], objects: [] };
+    if (!thing || (thing[1] === "circled" && thing[2] !== "utak") || (thing[1] !== "at" && thing[3] === "start")) return { text, word, kind: null, leaves };
+    const [, relation, what, of] = thing, kind = of === "start" ? "start" : relation === "circled" ? "circled" : what === "utak" ? "felt" : "near";
+    return { text, word, kind, what, of, objects: [what, of].filter((name) => name !== "utak" && name !== "start") };
   }
 
   // What stands for granted besides, for things that were felt.
@@ -394,20 +447,10 @@ const checkCertificate = (() => {
     return found;
   }
 
-  function checkDone(certificate, episode, goals) {
-    const last = episode.steps.length - 1, { steps, meaning } = certificate, counted = goals.filter(({ word }) => word !== "prefer");
-    const unknown = counted.find(({ kind, of }) => kind === null || (of && kind !== "corner" && episode.header.task.parameters[of] !== "object"));
-    need(counted.length > 0, "there is no goal to be shown");
-    need(!unknown, `certificates show nothing of ${unknown && unknown.text}`);
-    need(Array.isArray(steps) && steps.length === counted.length, "there is not one step for each goal");
-    let before = 0;
-    counted.forEach((goal, n) => {
-      const step = steps[n], staged = goal.word === "first" || goal.word === "then";
-      need(Number.isInteger(step) && (staged ? step >= before && step <= last : step === last), `${goal.text} is not shown of a step at which it must hold`);
-      if (staged) before = step;
-      goal.step = step;
-    });
-    const named = counted.filter(({ kind }) => kind === "felt" || kind === "circled"), names = [...new Set(named.map(({ of }) => of))];
+  // What each object means, as it must: a touch that felt a thing, no two one letter; returns what is granted.
+  function checkMeaning(meaning, episode, names) {
+    const unknown = names.find((name) => episode.header.task.parameters[name] !== "object");
+    need(unknown === undefined, `${unknown} is no object of the task`);
     need(isObject(meaning) && same(Object.keys(meaning), names), "it is not said what each object of the goals means");
     const colours = new Map(Object.entries(meaning).map(([name, touch]) => {
       need(Array.isArray(touch) && touch.length === 2 && touch.every(Number.isInteger) && episode.steps[touch[0]] && touch[1] in TOUCHES, `${name} means no touch`);
@@ -416,23 +459,43 @@ const checkCertificate = (() => {
       return [name, colour];
     }));
     need(new Set(colours.values()).size === colours.size, "two objects mean one letter");
-    for (const { kind, of, step, text } of named) need(kind !== "felt" || meaning[of][0] === step, `${text} is not felt at its step`);
-    return { given: claimsOf(episode.header.task, colours), counted, says: counted.map(({ text }) => text).join(", ") };
+    return claimsOf(episode.header.task, colours);
+  }
+
+  // The goals that are shown, each with its step; refused where they are not those of the claim.
+  function checkDone({ steps, meaning }, episode, goals) {
+    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), unknown = shown.find(({ kind }) => kind === null);
+    need(shown.length > 0, "there is no goal to be shown");
+    need(!unknown, `certificates show nothing of ${unknown && unknown.text}`);
+    need(Array.isArray(steps) && steps.length === shown.length, "there is not one step for each goal");
+    let before = 0;
+    shown.forEach((goal, n) => {
+      const step = steps[n], staged = goal.word === "first" || goal.word === "then";
+      need(Number.isInteger(step) && (staged ? step >= before && step <= last : step === last), `${goal.text} is not shown of a step at which it must hold`);
+      if (staged) before = step;
+      goal.step = step;
+    });
+    const given = checkMeaning(meaning, episode, [...new Set(shown.flatMap(({ objects }) => objects))]);
+    for (const { kind, of, step, text } of shown) need(kind !== "felt" || meaning[of][0] === step, `${text} is not felt at its step`);
+    return { given, shown };
   }
 
   function checkImpossible({ steps, meaning }, episode, goals) {
     need(same(steps, [episode.steps.length - 1]), "impossible is shown of the last step");
-    need(isObject(meaning) && Object.keys(meaning).length === 0, "impossible means nothing");
-    const barred = goals.find(({ word, leaves }) => word !== "prefer" && leaves);
+    const barred = goals.find(({ word, leaves }) => word !== "prefer" && leaves), names = [barred?.leaves].filter((name) => name && name !== "utak");
     need(barred, "certificates show of none of these goals that it is impossible");
-    return { given: ["whole(squares)", "isolated(things)"], counted: null, says: barred.text };
+    const given = checkMeaning(meaning, episode, names);
+    return { given: [...given, "whole(squares)", "isolated(things)", ...(names.length ? ["apart(things)"] : [])], shown: [{ ...barred, kind: "shut", of: names[0] }] };
   }
 
-  // Whether a case shows what is claimed.
-  function shows(world, one, counted, meaning) {
-    if (counted === null) return world.shutIn(one);
-    return counted.every(({ kind, of, step }) => kind === "felt" || (kind === "start" ? world.atStart(one, step)
-      : kind === "corner" ? world.atCorner(one, step, CORNERS[of]) : world.circled(one, step, meaning[of])));
+  // Whether a case shows a goal; frame : what stands behind the word `holds`.
+  function shows(world, one, { kind, what, of, step }, meaning, frame) {
+    if (kind === "shut") return world.shutIn(one, frame, meaning[of]);
+    if (frame.length) return false;
+    const covered = (name) => world.covered(one, meaning[name], step);
+    if (kind === "start") return (what === "utak" ? [one.squares[step]] : covered(what)).some((square) => same(square, [0, 0]));
+    if (kind === "near") return covered(what).some(([i, j]) => covered(of).some(([x, y]) => Math.abs(x - i) <= 1 && Math.abs(y - j) <= 1));
+    return kind === "felt" || (kind === "corner" ? world.atCorner(one, step, CORNERS[of]) : world.circled(one, step, meaning[of]));
   }
 
   // Reads the lines of cases; returns the cases that show the goals.
@@ -463,9 +526,9 @@ const checkCertificate = (() => {
         } else if (word === "replay" && values.length === 0) {
           if (!world.replay(one)) done();
         } else {
-          need(word === "holds" && values.length === 0, `${at}there is no such line`);
+          need(word === "holds", `${at}there is no such line`);
           need(one.squares.length === world.steps.length, `${at}commands are left`);
-          need(holds(one), `${at}this case does not show the goals`);
+          need(holds(one, values), `${at}this case does not show the goals`);
           shown.push(world.drawn(one));
           done();
         }
@@ -488,16 +551,16 @@ const checkCertificate = (() => {
     const goals = task.goals.map(goalOf), wanted = (claim === "done" ? checkDone : checkImpossible)(certificate, episode, goals);
     const along = Array.isArray(given) && given.at(-1) === "along(grid)";
     need(same(along ? given.slice(0, -1) : given, wanted.given), "what is taken for granted is not what the task says");
-    const simple = wanted.counted !== null && wanted.counted.every(({ kind }) => kind === "felt");
+    const simple = wanted.shown.every(({ kind }) => kind === "felt");
     need(Array.isArray(cases) && (cases.length === 0) === simple, simple ? "touches show these goals, and no cases" : "cases are missing");
     let shown = [];
     if (!simple) {
       const why = foreign(episode), world = new World(episode);
       need(why === null, why);
-      shown = readCases(cases, world, along ? 1 : 90, (one) => shows(world, one, wanted.counted, meaning));
+      shown = readCases(cases, world, along ? 1 : 90, (one, frame) => wanted.shown.every((goal) => shows(world, one, goal, meaning, frame)));
     }
     const touches = Object.entries(meaning).map(([name, [step, touch]]) => ({ name, step, offset: TOUCHES[touch] }));
-    return { accepted: true, says: `${claim}: ${wanted.says}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
+    return { accepted: true, says: `${claim}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
   }
 
   // Returns { accepted, says: what is shown, or why it is refused; shown: the cases that show it, as `drawn` has them; touches:

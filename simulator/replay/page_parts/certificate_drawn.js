@@ -16,7 +16,7 @@ function drawCertificate(at, checked) {
   const add = (name, d, title) => group.append(svg("path", { class: name, d }, svg("title", {}, title)));
   if (one) { // the square of waking is (0, 0) of the map frame, whose axes lie along the grid
     const place = placing({ ...header, world: { ...header.world, heading: heading - one.degrees } }, middle(0)).robot;
-    const settled = (occupied) => [...one.settled].filter(([, value]) => value === occupied).map(([key]) => key.split(",").map(Number));
+    const settled = (occupied) => one.settled(at.step, occupied);
     add("settled-free", settled(false).map((square) => dotOf(place(square))).join(""), "settled: free");
     add("settled-occupied", squares(settled(true), place), "settled: occupied");
     add("settled-verge", squares(one.verge, place), "felt: verge");
@@ -38,9 +38,9 @@ function certificatePanel(checked, header) {
   const { accepted, shown: cases } = checked, one = drawnCase(checked, header), parts = [];
   parts.push(html("p", { class: accepted ? "accepted" : "refused" }, html("strong", {}, accepted ? "✓ accepted" : "✗ refused"), `: ${shown(checked.says)}`));
   if (one) {
-    const count = (occupied) => [...one.settled.values()].filter((value) => value === occupied).length;
+    const count = (occupied) => one.settled(one.places.length - 1, occupied).length;
     parts.push(html("p", {}, `Drawn on the table is the case in which the robot's axes are turned by ${one.degrees} degrees against the squares: `
-      + `${count(true)} squares are settled as occupied, ${count(false)} as free.${cases.length > 1 ? ` In all, ${cases.length} cases agree with the episode, and each shows the goals.` : ""}`));
+      + `${count(true)} squares are settled as occupied at the end, ${count(false)} as free.${cases.length > 1 ? ` In all, ${cases.length} cases agree with the episode, and each shows the goals.` : ""}`));
   }
   parts.push(html("p", { class: "quiet" }, "Checked in this page, by what was seen, felt and commanded alone; this checker shares nothing with the robot, nor with utak verify."));
   return parts;
