@@ -8,8 +8,8 @@ import shapely
 
 from benchmarks.certificates.recorded import RecordedWalk
 from utak.geometry.counts.retina import FIELDS
-from utak.simulator.certificates.checker import Evidence, Sampling
-from utak.simulator.certificates.search import settle_all, waking_case
+from utak.simulator.certificates.checker import Evidence, Sampling, waking_case
+from utak.simulator.certificates.search import settle_all
 from utak.simulator.world.table import Table
 
 SLACK = 1e-5  # squares; what the checker allows for rounding
@@ -50,7 +50,7 @@ def lost_truth(walk: RecordedWalk) -> str:
         i, j = math.floor(x), math.floor(y)
         return not (0 <= i < table.width and 0 <= j < table.height) or bool(table.colours[j, i])
 
-    case, samples = waking_case(angle), Sampling(angle)
+    case, samples = waking_case(angle, evidence), Sampling(angle)
     for step, (place, square) in enumerate(zip(places, squares, strict=True)):
         if step:
             end = case.ends(evidence).get((square[0] - west, square[1] - south))
@@ -65,6 +65,7 @@ def lost_truth(walk: RecordedWalk) -> str:
                 return f"step {step}: {wrong[0]} is not so"
             ends = zip(place, places[0], case.ways[step], case.waking, (west, south), strict=True)
             for here, woke, way, waking, edge in ends:
+                way, waking = ((low / evidence.unit, high / evidence.unit) for low, high in (way, waking))
                 if not (way[0] - SLACK <= here - woke <= way[1] + SLACK):
                     return f"step {step}: the way is another"
                 if not (waking[0] - SLACK <= woke - edge <= waking[1] + SLACK):

@@ -9,6 +9,7 @@ import re
 from fractions import Fraction
 from functools import cache
 from itertools import product
+from math import lcm
 from typing import Any, NamedTuple, NoReturn
 
 VERDICTS_SHOWN = ("done", "impossible")
@@ -38,16 +39,15 @@ TOUCH_OFFSETS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-
 CORNERS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
 VERGE_LETTER = "b"  # the colour of what bounds the floor
 PI_DECIMALS = Fraction("3.14159265358979323846264338327950288")
-DIRECTION_DIGITS = 18  # of cosines and sines
-DIRECTION_SCALE = 10**DIRECTION_DIGITS
+DIRECTION_SCALE = 10**18  # cosines and sines are whole numbers of so small parts
 TIE_ERROR = DIRECTION_SCALE // 10**9  # so near to the middle between two squares either may be sampled (axiom 2)
-PLACE_ERROR = Fraction(1, 10**6)  # squares: so far from where its commands lead the robot may stand (axiom 4)
+PLACE_PARTS = 10**6  # of a square: by one of them the robot may stand beside where its commands lead (axiom 4)
 MAX_SWEPT_SQUARES = 10**5  # of one command; a bound on time
 MAX_EXPONENT_DIGITS = 4  # with the sign; a bound on time
 
 Spot = tuple[int, int]
-Span = tuple[Fraction, Fraction]  # least and greatest; or x and y of a vector
-Zone = tuple[Span, Span]  # a range of x and a range of y, map frame, in squares
+Span = tuple[int, int]  # least and greatest; or x and y of a vector
+Zone = tuple[Span, Span]  # a range of x and a range of y, map frame; `Evidence.unit` is a square
 Shown = tuple[str, str, str]  # corner, start, thing or circled; the corner or parameter; first, then or ""
 
 
@@ -62,16 +62,16 @@ def refuse(why: str) -> NoReturn:
 
 @cache
 def direction(angle: int) -> Span:
-    """Return cosine and sine of whole degrees, from 0 to 90, exact to 1e-18, by their series."""
+    """Return DIRECTION_SCALE times cosine and sine of whole degrees, from 0 to 90, rounded, by their series."""
     terms = [Fraction(1)]
     for n in range(1, 30):
         terms.append(terms[-1] * PI_DECIMALS * angle / (180 * n))
     parts = [sum((-1) ** (n // 2) * term for n, term in enumerate(terms) if n % 2 == odd) for odd in (0, 1)]
-    return round(parts[0], DIRECTION_DIGITS), round(parts[1], DIRECTION_DIGITS)
+    return round(parts[0] * DIRECTION_SCALE), round(parts[1] * DIRECTION_SCALE)
 
 
-def turned(vector: Span | tuple[int, int], angle: int) -> Span:
-    """Return a vector of the robot frame in the map frame."""
+def turned(vector: Span, angle: int) -> Span:
+    """Return DIRECTION_SCALE times a vector of the robot frame in the map frame."""
     (east, north), (cosine, sine) = vector, direction(angle)
     return east * cosine - north * sine, east * sine + north * cosine
 
@@ -80,7 +80,7 @@ class Sampling:
     """The squares that each field samples at one orientation: offsets from the robot's square, map frame."""
 
     def __init__(self, angle: int) -> None:
-        self.cosine, self.sine = (int(part * DIRECTION_SCALE) for part in direction(angle))
+        self.angle = angle
         self.weights: list[dict[Spot, int]] = []  # of each field: how often it samples each square
         self.slack: list[int] = []  # of each field: how many of its samples fall between two squares
         for east, north, side in FIELD_OFFSETS:
@@ -91,9 +91,12 @@ class Sampling:
 
     def under(self, east: int, north: int) -> Spot | None:
         """Return the square under an offset, itself as an offset; None where that falls between two squares."""
-        x, y = east * self.cosine - north * self.sine, east * self.sine + north * self.cosine
-        (i, a), (j, b) = (divmod(part + DIRECTION_SCALE // 2, DIRECTION_SCALE) for part in (x, y))
-        return (i, j) if all(TIE_ERROR < away < DIRECTION_SCALE - TIE_ERROR for away in (a, b)) else None
+        x, y = turned((east, north), self.angle)
+        (i, a), (j, b) = (
+            divmod(x + DIRECTION_SCALE // 2, DIRECTION_SCALE),
+            divmod(y + DIRECTION_SCALE // 2, DIRECTION_SCALE),
+        )
+        return (i, j) if min(a, b) > TIE_ERROR and max(a, b) < DIRECTION_SCALE - TIE_ERROR else None
 
 
 def parsed(text: str) -> Any:
@@ -127,6 +130,10 @@ class Evidence:
         for k, f in product(range(len(steps)), SAMPLED_FIELDS):
             self.ranges[k, f] = LEVEL_RANGES[FIELD_OFFSETS[f][2], steps[k]["retina"][f]]
         self.last = len(steps) - 1
+        moves = [action for action in self.actions if action and action["do"] == "move"]
+        self.parts = lcm(*(Fraction(move[part]).denominator for move in moves for part in ("east", "north")))
+        self.unit = 2 * self.parts * DIRECTION_SCALE * PLACE_PARTS  # a square: all lengths are whole numbers
+        self.error = self.unit // PLACE_PARTS
         if [row["step"] for row in steps] != list(range(len(steps))) or {*map(len, self.touches)} != {len(TOUCH_NAMES)}:
             raise ValueError("its steps are not whole")
         altered = [key for key in ("forked", "changes") if key in head]  # axiom 3
@@ -134,13 +141,16 @@ class Evidence:
         altered += ["disturbances"] * any("disturbed" in row for row in steps)
         self.hindrance = ", ".join(altered)  # why nothing is said of where the robot is; "" for no reason
 
-    def motion(self, step: int) -> Span:
-        """Return the vector, robot frame, by which the command of a step was to move a robot with empty hands."""
+    def motion(self, step: int, angle: int) -> Span:
+        """Return the vector, map frame, by which the command of a step was to move a robot with empty hands."""
         action = self.actions[step]
         if action["do"] == "grasp" and self.touches[step - 1][TOUCH_NAMES.index(action["direction"])] is not None:
             refuse(f"step {step}: the robot may have grasped something; where it is then no certificate says")
-        east, north = (action["east"], action["north"]) if action["do"] == "move" else (0, 0)
-        return Fraction(east), Fraction(north)
+        if action["do"] != "move":
+            return 0, 0
+        east, north = (int(Fraction(action[part]) * self.parts) for part in ("east", "north"))
+        x, y = turned((east, north), angle)
+        return 2 * PLACE_PARTS * x, 2 * PLACE_PARTS * y
 
 
 def sum_of(one: Span, other: Span) -> Span:
@@ -153,34 +163,34 @@ def common(one: Span, other: Span) -> Span:
     return max(one[0], other[0]), min(one[1], other[1])
 
 
-def grown(interval: Span, by: Fraction) -> Span:
+def grown(interval: Span, by: int) -> Span:
     """Return an interval made longer at both ends."""
     return interval[0] - by, interval[1] + by
 
 
-def side_of(number: int) -> Span:
+def side_of(number: int, unit: int) -> Span:
     """Return the range of the coordinates of a row or column of squares."""
-    return Fraction(number), Fraction(number + 1)
+    return number * unit, (number + 1) * unit
 
 
-def stretched(interval: Span, by: Fraction) -> Span:
+def stretched(interval: Span, by: int) -> Span:
     """Return the interval through which an interval leads that is moved."""
-    return interval[0] + min(by, Fraction()), interval[1] + max(by, Fraction())
+    return interval[0] + min(by, 0), interval[1] + max(by, 0)
 
 
-def touched(interval: Span) -> range:
+def touched(interval: Span, unit: int) -> range:
     """Return the rows or columns of squares in whose inside an interval has a part."""
-    return range(interval[0].__floor__(), interval[1].__ceil__())
+    return range(interval[0] // unit, -(-interval[1] // unit))
 
 
-def sweep(x: Span, y: Span, vector: Span) -> frozenset[Spot]:
+def sweep(x: Span, y: Span, vector: Span, unit: int) -> frozenset[Spot]:
     """Return the squares through whose inside a point leads that starts anywhere in a box."""
-    (dx, dy), columns, rows = vector, touched(stretched(x, vector[0])), touched(stretched(y, vector[1]))
+    (dx, dy), columns, rows = vector, touched(stretched(x, vector[0]), unit), touched(stretched(y, vector[1]), unit)
     if len(columns) * len(rows) > MAX_SWEPT_SQUARES:
         refuse("a command leads further than the checker looks")
-    lane, square = ([b * dx - a * dy for a, b in product(*sides)] for sides in ((x, y), (side_of(0), side_of(0))))
+    lane, square = ([b * dx - a * dy for a, b in product(*sides)] for sides in ((x, y), ((0, unit), (0, unit))))
     low, high = min(lane) - max(square), max(lane) - min(square)
-    return frozenset((i, j) for i, j in product(columns, rows) if low < j * dx - i * dy < high)
+    return frozenset((i, j) for i, j in product(columns, rows) if low < (j * dx - i * dy) * unit < high)
 
 
 class Course(NamedTuple):
@@ -190,7 +200,7 @@ class Course(NamedTuple):
     waking: Zone  # the point of waking
     occupied: dict[Spot, bool]  # the squares that are settled: occupied or free
     squares: tuple[Spot, ...] = ((0, 0),)  # the square of the robot, at each step
-    ways: tuple[Zone, ...] = (((Fraction(), Fraction()),) * 2,)  # at each step, from the point of waking
+    ways: tuple[Zone, ...] = (((0, 0), (0, 0)),)  # at each step, from the point of waking
     swept: tuple[frozenset[Spot], ...] = ()  # the squares through which each command may have led
 
     @property
@@ -200,33 +210,34 @@ class Course(NamedTuple):
 
     def ends(self, episode: Evidence) -> dict[Spot, "Course"]:
         """Return the case after the next command, for each square in which that may have ended."""
-        vector = turned(episode.motion(self.step + 1), self.angle)
+        unit, error, vector = episode.unit, episode.error, episode.motion(self.step + 1, self.angle)
         if not any(vector):
-            return {self.squares[-1]: self.after(self.squares[-1], [self.ways[-1]], frozenset())}
+            return {self.squares[-1]: self.after(self.squares[-1], [self.ways[-1]], frozenset(), episode)}
         sums = [sum_of(w, d) for w, d in zip(self.waking, self.ways[-1], strict=True)]
-        place = [common(grown(p, 2 * PLACE_ERROR), side_of(q)) for p, q in zip(sums, self.squares[-1], strict=True)]
-        swept = sweep(place[0], place[1], vector)
+        place = [common(grown(p, 2 * error), side_of(q, unit)) for p, q in zip(sums, self.squares[-1], strict=True)]
+        swept = sweep(place[0], place[1], vector, unit)
         barred = {square for square in swept if self.occupied.get(square, True)}
         found: dict[Spot, list[Zone]] = {}
         whole = zip(place, self.ways[-1], vector, strict=True)
-        ends = [[(sum_of(p, (v, v)), sum_of(d, (v, v)), PLACE_ERROR) for p, d, v in whole]]
+        ends = [[(sum_of(p, (v, v)), sum_of(d, (v, v)), error) for p, d, v in whole]]
         steps = [sorted({0, (v > 0) - (v < 0)}) for v in vector]
         for square in swept:  # a motion may have been stopped where it would have gone on in an occupied square
             if any((square[0] + a, square[1] + b) in barred for a, b in product(*steps)):
                 parts = []
                 for p, q, v, d, w in zip(place, square, vector, self.ways[-1], self.waking, strict=True):
-                    at = common(stretched(p, v), side_of(q))
-                    way = common(stretched(d, v), grown((at[0] - w[1], at[1] - w[0]), PLACE_ERROR))
-                    parts.append((at, way, Fraction() if v else PLACE_ERROR))
+                    at = common(stretched(p, v), side_of(q, unit))
+                    way = common(stretched(d, v), grown((at[0] - w[1], at[1] - w[0]), error))
+                    parts.append((at, way, 0 if v else error))
                 ends.append(parts)
         for (x, dx, ex), (y, dy, ey) in ends:
-            for square in product(touched(grown(x, ex)), touched(grown(y, ey))):
+            for square in product(touched(grown(x, ex), unit), touched(grown(y, ey), unit)):
                 found.setdefault(square, []).append((dx, dy))
-        return {square: self.after(square, ways, swept) for square, ways in sorted(found.items())}
+        return {square: self.after(square, ways, swept, episode) for square, ways in sorted(found.items())}
 
-    def after(self, end: Spot, ways: list[Zone], swept: frozenset[Spot]) -> "Course":
+    def after(self, end: Spot, ways: list[Zone], swept: frozenset[Spot], episode: Evidence) -> "Course":
         """Return the case after one more command, which ended in a square by one of some ways."""
-        x, y = (self.axis(n, grown(side_of(end[n]), PLACE_ERROR), [way[n] for way in ways]) for n in (0, 1))
+        sides = [grown(side_of(number, episode.unit), episode.error) for number in end]
+        x, y = (self.axis(n, sides[n], [way[n] for way in ways]) for n in (0, 1))
         squares, all_ways = (*self.squares, end), (*self.ways, (x[0], y[0]))
         return Course(self.angle, (x[1], y[1]), dict(self.occupied), squares, all_ways, (*self.swept, swept))
 
@@ -263,6 +274,11 @@ class Course(NamedTuple):
             elif high - abs(weight) < least:  # as much as it can
                 self.occupied[square] = weight > 0
         return low > most or high < least
+
+
+def waking_case(angle: int, episode: Evidence) -> Course:
+    """Return the case of waking with one orientation of the grid."""
+    return Course(angle, (side_of(0, episode.unit),) * 2, {})
 
 
 def goal_of(text: str) -> Shown:
@@ -356,7 +372,7 @@ class CertificateCheck:
                         refuse(f"line {number}: {text} may not hold")
                 case, shown = None, shown + 1
             elif word == "angle" and not case and not left and args == [angle + 1] and angle + 1 < angles:
-                angle, samples, case = angle + 1, Sampling(angle + 1), Course(angle + 1, (side_of(0), side_of(0)), {})
+                angle, samples, case = angle + 1, Sampling(angle + 1), waking_case(angle + 1, self.episode)
             elif word == "end" and are_whole(args, 2) and (left if case is None else case.step < self.episode.last):
                 if case:
                     left.append(case.ends(self.episode))
@@ -372,7 +388,9 @@ class CertificateCheck:
         """Return whether a goal holds at a step of a case for sure."""
         kind, name, _ = goal
         if kind == "start":
-            return case.squares[step] == (0, 0) or all(abs(d) <= 1 for way in case.ways[step] for d in way)
+            return case.squares[step] == (0, 0) or all(
+                abs(d) <= self.episode.unit for way in case.ways[step] for d in way
+            )
         if kind == "shut_in":
             return self.is_shut_in(case, samples)
         if kind == "circled":
@@ -384,7 +402,7 @@ class CertificateCheck:
         (u, v), square = turned(CORNERS[name], case.angle), case.squares[step]  # the direction of the corner, map frame
         ahead = (square[0] + 2 * (u > 0) - 1, square[1]), (square[0], square[1] + 2 * (v > 0) - 1)
 
-        def reach(at: Spot) -> Fraction:
+        def reach(at: Spot) -> int:
             return u * (at[0] + (u > 0)) + v * (at[1] + (v > 0))
 
         is_furthest = all(reach(at) <= reach(square) for at in case.squares[: step + 1])
@@ -407,7 +425,8 @@ class CertificateCheck:
         thing = case.squares[felt][0] + offset[0], case.squares[felt][1] + offset[1]
         if any(thing in swept for swept in (*case.swept[:step], case.squares[: step + 1])):
             return False  # the track may lead through the square in which the thing was felt
-        x, y = (t + Fraction(1, 2) - sum(w) / 2 for t, w in zip(thing, case.waking, strict=True))
+        unit = self.episode.unit
+        x, y = ((2 * t + 1) * unit // 2 - sum(w) // 2 for t, w in zip(thing, case.waking, strict=True))
         winding = 0
         for (x0, y0), (x1, y1) in zip(track, [*track[1:], track[0]], strict=True):
             if (y0 <= y) != (y1 <= y):
@@ -437,5 +456,5 @@ def verify(episode: str, certificate: str) -> str:
     """
     try:
         return CertificateCheck(Evidence(episode), parsed(certificate)).check()
-    except (LookupError, TypeError, AttributeError, RecursionError) as error:
+    except (LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         raise ValueError(f"it is damaged: {type(error).__name__}: {error}") from None

@@ -10,8 +10,7 @@ import json
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
-from math import floor
+from functools import cache
 from typing import Any, NamedTuple
 
 from utak.simulator.certificates.checker import (
@@ -30,8 +29,7 @@ from utak.simulator.certificates.checker import (
     Spot,
     claims_taken,
     goal_of,
-    side_of,
-    turned,
+    waking_case,
 )
 
 MAX_CASES = 20000  # that are tried; a bound on time
@@ -166,13 +164,14 @@ class _Search:
 
     def likely_case(self, angle: int) -> Course | None:
         """Return the case in which all went as commanded from the middle of a square; None where it cannot be."""
-        case, place = waking_case(angle), [Fraction(1, 2), Fraction(1, 2)]
+        unit, case = self.episode.unit, waking_case(angle, self.episode)
+        place = [unit // 2, unit // 2]
         while settle_all(case, self.episode, self.samples)[1] is None:
             if case.step == self.episode.last:
                 return case.replayed(self.episode)
-            motion = turned(self.episode.motion(case.step + 1), angle)
+            motion = self.episode.motion(case.step + 1, angle)
             place = [p + v for p, v in zip(place, motion, strict=True)]
-            end = case.ends(self.episode).get((floor(place[0]), floor(place[1])))
+            end = case.ends(self.episode).get((place[0] // unit, place[1] // unit))
             if end is None:
                 return None
             case = end
@@ -194,7 +193,7 @@ class _Search:
     def lines(self, angle: int) -> list[StatedLine]:
         """Return the lines that treat all cases of one orientation of the grid."""
         self.samples = Sampling(angle)
-        return [["angle", angle], *self.branch(waking_case(angle)).lines]
+        return [["angle", angle], *self.branch(waking_case(angle, self.episode)).lines]
 
     def branch(self, case: Course) -> TreatedBranch:
         """Return the lines that treat a case; raises NoCertificateError where it may be and the goals may not hold."""
@@ -209,8 +208,11 @@ class _Search:
         else:
             again: Course | None = case
             if any(low != high for way in case.ways for low, high in way):
-                lines, needed = [["replay"]], _free(case, set[Spot]().union(*case.swept))
                 again = case.replayed(self.episode)
+                if again is None or (again.waking, again.ways) != (case.waking, case.ways):
+                    lines, needed = [["replay"]], _free(case, set[Spot]().union(*case.swept))
+                else:
+                    again = case
             if again is not None:
                 treated = self.shown(again) if again.step == self.episode.last else self.branches(again)
                 lines, needed = lines + treated.lines, needed | treated.needed
@@ -245,20 +247,25 @@ class _Search:
 
 def settle_all(case: Course, episode: Evidence, samples: Sampling) -> tuple[list[UsefulCount], UsefulCount | None]:
     """Settle all squares that single fields settle; return how, and the count that contradicts the case."""
-    for step in range(case.step):  # the robot saw the same squares before, and other counts of them
-        if case.squares[step] == case.squares[-1]:
-            for field in sorted(SAMPLED_FIELDS):
-                if episode.ranges[step, field] != episode.ranges[case.step, field]:
-                    terms = [(case.step, field, 1), (step, field, -1)]
-                    if case.settle(episode, samples, terms):
-                        return [], UsefulCount(["count", *map(list, terms)], frozenset(), frozenset())
-    counts: list[UsefulCount] = []
-    holders: dict[Spot, list[tuple[int, int]]] = {}
+    places = {square: step for step, square in reversed([*enumerate(case.squares)])}  # the first visit of each
+    before = places[case.squares[-1]]
     fields = [(case.step, field) for field in sorted(SAMPLED_FIELDS)]
+    if before < case.step:  # the robot saw the same squares before, and tells nothing new of them
+        fields = [
+            (step, field) for step, field in fields if episode.ranges[before, field] != episode.ranges[step, field]
+        ]
+    for step, field in fields if before < case.step else ():
+        terms = [(step, field, 1), (before, field, -1)]
+        if case.settle(episode, samples, terms):
+            return [], UsefulCount(["count", *map(list, terms)], frozenset(), frozenset())
+    counts: list[UsefulCount] = []
     while fields:
         fresh: set[Spot] = set()
         for step, field in fields:
-            sampled = frozenset(_sampled(case, samples, step, field))
+            if not _tells(case, episode, samples, step, field):
+                continue
+            column, row = case.squares[step]
+            sampled = frozenset((column + i, row + j) for i, j in samples.weights[field])
             unknown = sampled - case.occupied.keys()
             contradicts = case.settle(episode, samples, [(step, field, 1)])
             count = UsefulCount(["count", [step, field, 1]], sampled, unknown & case.occupied.keys())
@@ -267,30 +274,40 @@ def settle_all(case: Course, episode: Evidence, samples: Sampling) -> tuple[list
             if count.settled:
                 counts.append(count)
                 fresh |= count.settled
-        holders = holders or _holders(case, samples)
-        fields = sorted({holder for square in fresh for holder in holders[square]})
+        holding, holders = _holders(samples.angle), set[tuple[int, int]]()
+        for (column, row), step in places.items():
+            for i, j in fresh:
+                holders.update((step, field) for field in holding.get((i - column, j - row), ()))
+        fields = sorted(holders)
     return counts, None
 
 
-def _sampled(case: Course, samples: Sampling, step: int, field: int) -> Iterator[Spot]:
-    """Yield the squares that a field samples at a step."""
-    column, row = case.squares[step]
-    return ((column + i, row + j) for i, j in samples.weights[field])
-
-
-def _holders(case: Course, samples: Sampling) -> dict[Spot, list[tuple[int, int]]]:
-    """Return the fields, (step, field) each, that sample each square."""
-    found: dict[Spot, list[tuple[int, int]]] = defaultdict(list)
-    for step in range(case.step + 1):
-        for field in sorted(SAMPLED_FIELDS):
-            for square in _sampled(case, samples, step, field):
-                found[square].append((step, field))
+@cache
+def _holders(angle: int) -> dict[Spot, list[int]]:
+    """Return the fields that sample each square, which is an offset from that of the robot."""
+    found: dict[Spot, list[int]] = defaultdict(list)
+    samples = Sampling(angle)
+    for field in sorted(SAMPLED_FIELDS):
+        for square in samples.weights[field]:
+            found[square].append(field)
     return found
 
 
-def waking_case(angle: int) -> Course:
-    """Return the case of waking with one orientation of the grid."""
-    return Course(angle, (side_of(0), side_of(0)), {})
+def _tells(case: Course, episode: Evidence, samples: Sampling, step: int, field: int) -> bool:
+    """Return whether a single field may settle a square or contradict the case."""
+    (column, row), occupied = case.squares[step], case.occupied
+    least, most = episode.ranges[step, field]
+    low = high = heaviest = 0
+    for (i, j), weight in samples.weights[field].items():
+        state = occupied.get((column + i, row + j))
+        if state is not False:
+            high += weight
+            if state:
+                low += weight
+            elif weight > heaviest:
+                heaviest = weight
+    least -= samples.slack[field]
+    return low + heaviest > most or high - heaviest < least
 
 
 def _free(case: Course, squares: Iterable[Spot]) -> set[Spot]:

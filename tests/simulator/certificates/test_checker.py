@@ -162,7 +162,7 @@ def test_after_a_grasp_of_something_nothing_is_said_of_places(tmp_path: Path) ->
     found = walk(tmp_path, room, [Grasp("west"), Move(1.0, 0.0)], "at(utak,start)")
     with pytest.raises(NoCertificateError, match="may have grasped"):
         found_certificate(found)
-    assert Evidence(walk(tmp_path, room, [Grasp("east")], "at(utak,start)").text).motion(1) == (0, 0)
+    assert Evidence(walk(tmp_path, room, [Grasp("east")], "at(utak,start)").text).motion(1, 0) == (0, 0)
 
 
 @pytest.mark.parametrize(("key", "value"), [("forked", []), ("options", {"noise": 0.1, "kb": []})])
