@@ -10,7 +10,8 @@ from utak.kb.body import DIRECTIONS
 from utak.kb.evidence.reason import Reason, ReasonKind
 from utak.kb.evidence.record import RecordedStep
 from utak.kb.evidence.witness import command_reason
-from utak.simulator.certificates.checker import RefusedError, verify
+from utak.simulator.certificates.checker import verify
+from utak.simulator.certificates.courses import RefusedError
 from utak.simulator.episode.episode import EpisodeLine, encode
 
 # What certificates take for granted besides claims of the task (docs/certificates.md), in words.

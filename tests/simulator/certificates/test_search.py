@@ -35,7 +35,7 @@ def test_where_nothing_shows_the_verdict_one_line_says_so(tmp_path: Path, capsys
     certificate = tmp_path / "certificate.json"
     assert main(["run", str(EXAMPLES / "go_next_room"), "--certificate", str(certificate)]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "certificate" in line]
-    assert told == ["no certificate: certificates show nothing of in(utak,room(next))"]
+    assert told == ["no certificate: nothing is shown of in(utak,room(next))"]
     assert not certificate.exists()
 
 

@@ -23,7 +23,8 @@ from tests.simulator.certificates.test_checker import (
 )
 from tests.tables import few
 from utak.kb.body import Grasp, Move
-from utak.simulator.certificates.checker import RefusedError, verify
+from utak.simulator.certificates.checker import verify
+from utak.simulator.certificates.courses import RefusedError
 
 SECOND = Path(__file__).resolve().parents[3] / "simulator" / "replay" / "page_parts" / "certificate.js"
 NODE = shutil.which("node") or shutil.which("nodejs")
