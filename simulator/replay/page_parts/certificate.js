@@ -289,14 +289,14 @@ const checkCertificate = (() => {
       return [...found.values()];
     }
 
-    // Works a case's places out again; whether it still stands.
+    // Works a case's places out again, and what stays occupied beside what is carried; whether it still stands.
     replay(one) {
       let again = { ...this.begin(one.degrees), settled: one.settled };
       for (const square of one.squares.slice(1)) {
         again = this.following(again).get(keyOf(square));
         if (!again) return false;
       }
-      Object.assign(one, { places: again.places, swept: again.swept });
+      Object.assign(one, { places: again.places, swept: again.swept, settled: again.settled });
       return true;
     }
 
