@@ -1,5 +1,6 @@
 """Whether what a certificate claims of a recorded walk holds on the true table, and is among what the rules allow."""
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 
@@ -16,8 +17,19 @@ SLACK = 1e-5  # squares; what the checker allows for rounding
 
 
 def is_given(walk: RecordedWalk, given: Sequence[str]) -> bool:
-    """Return whether the grid lies as it is given."""
-    return "along(grid)" not in given or walk.world.heading % 90 == 0
+    """Return whether what is given is so; that verge lies nowhere within floor is so in all drawn worlds."""
+    outlines = [walk.world.verge, *walk.things[0].values()]
+    if "along(grid)" in given and walk.world.heading % 90 != 0:
+        return False
+    if "whole(squares)" in given:
+        for outline in outlines:
+            if abs(outline.area - project(outline).covered.sum()) > SLACK:
+                return False
+    parts = [_covered(walk, name, 0) for name in walk.things[0]] if "apart(things)" in given else []
+    pairs = itertools.combinations(parts, 2)
+    return not any(
+        abs(i - a) + abs(j - b) <= 1 for one, other in pairs for (i, j), (a, b) in itertools.product(one, other)
+    )
 
 
 def holds(walk: RecordedWalk, goal: str, step: int, meaning: Mapping[str, Sequence[int]]) -> bool:
