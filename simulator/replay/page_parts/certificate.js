@@ -333,14 +333,15 @@ const checkCertificate = (() => {
       return true;
     }
 
-    // What a case settles, for whoever draws it: the angle, the squares that are occupied or free at a step, where the robot is at
-    // each step (bounds in each axis), and the squares that were felt as verge.
+    // What a case settles, for whoever draws it: the angle, the squares that are occupied or free at a step, those that the thing of
+    // a touch covers at one, where the robot is at each step (bounds in each axis), and the squares that were felt as verge.
     drawn(one) {
       const inSquares = (interval) => interval.map((value) => Number((value * 1000000n) / this.unit) / 1e6);
       const squares = [...new Set([...one.settled.keys()].map((key) => key.replace(/,\d+$/, "")))].map((key) => key.split(",").map(Number));
       return {
         degrees: one.degrees, places: one.places.map((place) => place.map(inSquares)),
         settled: (step, occupied) => squares.filter((square) => this.at(one, square, step) === occupied),
+        covered: (touch, step) => this.covered(one, touch, step),
         verge: [...this.felt(one).values()].filter(({ colour }) => colour === "b").map(({ square }) => square),
       };
     }
@@ -529,7 +530,7 @@ const checkCertificate = (() => {
           need(word === "holds", `${at}there is no such line`);
           need(one.squares.length === world.steps.length, `${at}commands are left`);
           need(holds(one, values), `${at}this case does not show the goals`);
-          shown.push(world.drawn(one));
+          shown.push({ ...world.drawn(one), frame: values });
           done();
         }
       }
@@ -559,7 +560,7 @@ const checkCertificate = (() => {
       need(why === null, why);
       shown = readCases(cases, world, along ? 1 : 90, (one, frame) => wanted.shown.every((goal) => shows(world, one, goal, meaning, frame)));
     }
-    const touches = Object.entries(meaning).map(([name, [step, touch]]) => ({ name, step, offset: TOUCHES[touch] }));
+    const touches = Object.entries(meaning).map(([name, touch]) => ({ name, touch, offset: TOUCHES[touch[1]] }));
     return { accepted: true, says: `${claim}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
   }
 

@@ -390,7 +390,7 @@ def test_a_certificate_is_checked_and_drawn(browser: Browser, tmp_path: Path) ->
         drawn = browser.run(
             "[...document.querySelectorAll('.certificate path')].map((one) => one.getAttribute('class'))"
         )
-        names = ["free", "occupied", "verge", "place", "thing"] if text == stated else []
+        names = ["free", "occupied", "verge", "thing", "place"] if text == stated else []
         assert drawn == [f"settled-{name}" for name in names]
         assert browser.complaints() == []
     page.write_text(replay_page(episode))
