@@ -156,6 +156,9 @@ RUN = (
         "draw the true table, which the robot does not see, on stderr after every step; on a terminal in place",
     ),
 )
+CERTIFICATES = value(
+    "--certificate", "FOLDER", "write each episode there, with why its verdict follows, for `utak verify`, or why not"
+)
 TEST = (
     value("folders", "FOLDER", "a scenario, or a folder of scenarios", nargs="+"),
     *SETTINGS,
@@ -165,7 +168,8 @@ TEST = (
     value("--junit", "FILE", "write all outcomes to this file as JUnit XML"),
     value("--csv", "FILE", "write the points of all scenarios to this file as a table"),
     flag("--times", "say in --json and --junit how long each scenario took"),
-    flag("--force", "let --junit and --csv overwrite files of other kinds"),
+    CERTIFICATES,
+    flag("--force", "let --junit, --csv and --certificate overwrite files of other kinds"),
 )
 SWEEP = (
     value("scenarios", "SCENARIO", "a scenario, or a folder of scenarios", nargs="+"),
@@ -185,6 +189,7 @@ SWEEP = (
     value("--seconds", "S", "end a run that takes longer than S seconds", RUN_SECONDS),
     *ROBOT_OPTIONS,
     value("--svg", "FILE", "draw success rates and numbers of commands"),
+    CERTIFICATES,
     flag("--json", "print the summary as one JSON object"),
 )
 CHECK = (
