@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.affinity import translate
 
+from benchmarks.certificates.drawn import HEADINGS
 from benchmarks.certificates.recorded import RecordedWalk, recorded_walk
 from utak.geometry import Pose, plan_motion
 from utak.kb.body import Command, Grasp, Move, Push, Release
@@ -14,8 +15,7 @@ from utak.simulator.world.world import Thing, World
 
 WALL = 2.0  # squares: how thick walls are
 OUTSIDE = 7.0  # squares of floor beyond the room, on each side
-STRIDE = 2.0  # squares between halts along the walls, so that each square of them is felt
-HEADINGS = (0, 0, 0, 90, 180, 1, 30)  # degrees; as often as they stand here
+HALT_DISTANCE = 2.0  # squares between halts along the walls, so that each square of them is felt
 
 
 def drawn_room(seed: int) -> RecordedWalk:
@@ -99,7 +99,7 @@ def _ring(low: float, width: int, height: int) -> list[tuple[float, float]]:
     (x0, y0), (x1, y1) = (low + 0.5, low + 0.5), (low + width - 0.5, low + height - 0.5)
     found = []
     for (ax, ay), (bx, by) in (((x0, y0), (x1, y0)), ((x1, y0), (x1, y1)), ((x1, y1), (x0, y1)), ((x0, y1), (x0, y0))):
-        parts = math.ceil(max(abs(bx - ax), abs(by - ay)) / STRIDE)
+        parts = math.ceil(max(abs(bx - ax), abs(by - ay)) / HALT_DISTANCE)
         found += [(ax + (bx - ax) * k / parts, ay + (by - ay) * k / parts) for k in range(parts + 1)]
     return found
 

@@ -168,7 +168,8 @@ class Course(NamedTuple):
 
     def key(self, square: Spot, step: int) -> Key:
         """Return the key of what a square is at a step."""
-        return *square, max((k for k in self.changes.get(square, ()) if k <= step), default=0)
+        changes = self.changes.get(square)
+        return *square, next((k for k in reversed(changes) if k <= step), 0) if changes else 0
 
     def at(self, square: Spot, step: int) -> bool | None:
         """Return whether a square is occupied at a step; None where that is not settled."""
@@ -179,8 +180,8 @@ class Course(NamedTuple):
         (i, j), offset = self.squares[step], under(*TOUCH_OFFSETS[touch], self.angle)
         return offset and (i + offset[0], j + offset[1])
 
-    def ends(self, episode: Evidence) -> dict[Spot, "Course"]:
-        """Return the case after the next command, for each square in which that may have ended."""
+    def ends(self, episode: Evidence, only: Spot | None = None) -> dict[Spot, "Course"]:
+        """Return the case after the next command, for each square in which that may have ended, or for one."""
         unit, error, here, place = episode.unit, episode.error, self.squares[-1], self.places[-1]
         held = frozenset(square for square in self.held[-1] if self.at(square, self.step) is not False)
         word, found = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]]()
@@ -205,7 +206,7 @@ class Course(NamedTuple):
         since = max(k for k, row in enumerate(episode.actions[: self.step + 1]) if not row or row["do"] == "grasp")
         taken = [square for square in self.held[since] if held and self.at(square, since) is not False]
         cases: dict[Spot, Course] = {}
-        for square, ends in sorted(found.items()):
+        for square, ends in sorted(end for end in found.items() if only in (None, end[0])):
             low, high = ([side(end[n][k] for end in ends) for n in (0, 1)] for k, side in enumerate((min, max)))
             x, y = box = [common((low[n], high[n]), side_of(square[n], unit)) for n in (0, 1)]
             by = zip(box, self.places[since], strict=True)
@@ -242,7 +243,7 @@ class Course(NamedTuple):
         """Return the case with its places by all that is settled now; None where a command cannot have ended so."""
         again: Course | None = Course(self.angle, self.occupied, {}, self.places[:1])
         for square in self.squares[1:]:
-            again = again and again.ends(episode).get(square)
+            again = again and again.ends(episode, square).get(square)
         return again and again._replace(changes=self.changes, held=self.held)
 
     def settle(self, episode: Evidence, terms: list[tuple[int, int, int]]) -> bool:
@@ -275,9 +276,8 @@ class Course(NamedTuple):
     def carried(self, episode: Evidence, felt: Spot, step: int) -> int:
         """Return the last step up to one at which the thing felt may be held, if it was grasped next; else -1."""
         grasp, way = felt[0] + 1, {"do": "grasp", "direction": TOUCH_NAMES[felt[1]]}
-        if grasp > step or episode.actions[grasp] != way:
-            return -1
-        return next((k for k in range(grasp, step) if not self.held[k + 1]), step)
+        is_taken = grasp <= step and episode.actions[grasp] == way
+        return next((k for k in range(grasp, step) if not self.held[k + 1]), step) if is_taken else -1
 
     def covered(self, episode: Evidence, felt: Spot, step: int) -> set[Spot]:
         """Return squares that the thing felt covers for sure at a step."""

@@ -171,12 +171,17 @@ def _frames(checker: CertificateCheck, case: Course) -> Iterator[list[int]]:
         for touch, letter in enumerate(touches)
         if letter == VERGE_LETTER and (square := case.touch(step, touch))
     }
-    columns, rows = ([at[n] for at in felt] for n in (0, 1))
-    for w, e in itertools.product(sorted(set(columns)), repeat=2):
-        if e - w > 1:
-            for s, n in itertools.product(sorted(set(rows)), repeat=2):
-                if n - s > 1 and {(w, s + 1), (w, n - 1), (e, s + 1), (e, n - 1)} <= felt:
-                    yield [w, s, e, n]
+    rows: dict[int, set[int]] = defaultdict(set)  # felt as verge, of each column
+    for column, row in felt:
+        rows[column].add(row)
+    frames: list[tuple[int, list[int]]] = []  # and how many squares of them were not felt
+    for w, e in itertools.combinations(sorted(rows), 2):
+        for low, high in itertools.combinations_with_replacement(sorted(rows[w] & rows[e]), 2):
+            s, n = low - 1, high + 1
+            if e - w > 1 and {(w + 1, s), (e - 1, s), (w + 1, n), (e - 1, n)} <= felt:
+                edge = {*itertools.product((w, e), range(low, n)), *itertools.product(range(w + 1, e), (s, n))}
+                frames.append((len(edge - felt), [w, s, e, n]))
+    yield from (frame for _, frame in sorted(frames))
 
 
 def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
