@@ -15,7 +15,7 @@ from utak.simulator.world.world import Thing, World
 
 WALL = 2.0  # squares: how thick walls are
 OUTSIDE = 7.0  # squares of floor beyond the room, on each side
-HALT_DISTANCE = 2.0  # squares between halts along the walls, so that each square of them is felt
+FEELING_STRIDE = 2.0  # squares between halts along the walls, so that each square of them is felt
 
 
 def drawn_room(seed: int) -> RecordedWalk:
@@ -99,7 +99,7 @@ def _ring(low: float, width: int, height: int) -> list[tuple[float, float]]:
     (x0, y0), (x1, y1) = (low + 0.5, low + 0.5), (low + width - 0.5, low + height - 0.5)
     found = []
     for (ax, ay), (bx, by) in (((x0, y0), (x1, y0)), ((x1, y0), (x1, y1)), ((x1, y1), (x0, y1)), ((x0, y1), (x0, y0))):
-        parts = math.ceil(max(abs(bx - ax), abs(by - ay)) / HALT_DISTANCE)
+        parts = math.ceil(max(abs(bx - ax), abs(by - ay)) / FEELING_STRIDE)
         found += [(ax + (bx - ax) * k / parts, ay + (by - ay) * k / parts) for k in range(parts + 1)]
     return found
 

@@ -102,13 +102,15 @@ def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
     """Return the certificate of a claim; raises RefusedError or NoCertificateError where none is found."""
     refusal = RefusedError("the goals name nothing that was felt")
     likely: Course | None = None
-    for certificate in _candidates(episode, claim):
+    candidates = list(_candidates(episode, claim))
+    for certificate in candidates:
         checker = CertificateCheck(episode, certificate)
         if all(goal[:2] == ("near", OWN_NAME) for goal in checker.goals):
             return certificate
-        likely = likely or _likely_course(episode)
         try:
-            certificate["steps"] = _likely_steps(checker, likely)
+            if claim == "impossible" or len(candidates) > 1 or any(goal[3] for goal in checker.goals):
+                likely = likely or _likely_course(episode)
+                certificate["steps"] = _likely_steps(checker, likely)
             certificate["cases"] = _Search(episode, CertificateCheck(episode, certificate)).all_lines(certificate)
         except RefusedError as why:
             refusal = why
@@ -335,8 +337,10 @@ def settle_all(case: Course, episode: Evidence) -> tuple[list[UsefulCount], Usef
         holding, holders = _holders(case.angle), set[tuple[int, int]]()
         for ((column, row), _), step in places.items():
             for i, j, k in fresh:
-                if k <= step and (found := holding.get((i - column, j - row))) and case.key((i, j), step)[2] == k:
-                    holders.update((step, field) for field in found)
+                found = holding.get((i - column, j - row))
+                if found and (not carried or case.key((i, j), step)[2] == k):
+                    for field in found:
+                        holders.add((step, field))
         fields = sorted(holders)
     return counts, None
 
