@@ -1,10 +1,13 @@
 """Count accepted certificates whose claim is false on the true table.
 
 python -m benchmarks.certificates --count 100 --seed 0 --mutants 20
+python -m benchmarks.certificates --rooms --count 100 --seed 0 --mutants 20
 
-Each random walk that a certificate is found for is held against the truth, and so are mutants of the certificate that
-are accepted and claim something else; whether the rules allow what really happened is asked of all. The exit code is 1
-when an accepted claim is false, or when what happened is excluded.
+Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out. Each
+that a certificate is found for is held against the truth, and so are mutants of the certificate that are accepted.
+Where none is found one is forged, for a checker that takes any goal to hold, and is held, with mutants of it, against
+the checker as it is. Whether the rules allow what really happened is asked of all. The exit code is 1 when an accepted
+claim is false, or when what happened is excluded.
 """
 
 import argparse
@@ -13,13 +16,23 @@ import sys
 import time
 from collections import Counter
 from typing import Any
+from unittest.mock import patch
+
+import numpy as np
 
 from benchmarks.certificates.drawn import drawn_walk
+from benchmarks.certificates.gaps import drawn_room, gets_out
 from benchmarks.certificates.mutants import mutants
 from benchmarks.certificates.recorded import RecordedWalk
 from benchmarks.certificates.truth import holds, is_given, lost_truth
-from utak.simulator.certificates.checker import RefusedError, verify
+from utak.simulator.certificates import search
+from utak.simulator.certificates.checker import OWN_NAME, CertificateCheck, goal_of, verify
+from utak.simulator.certificates.courses import RefusedError
 from utak.simulator.certificates.search import NoCertificateError, certificate_of
+
+FALSE = "FALSE"  # of a claim that was accepted
+felt_frames = search._frames
+BARE_FRAME = [-3, -3, 3, 3]  # of a forged certificate, before it is changed at random
 
 
 def main() -> int:
@@ -27,54 +40,92 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--rooms", action="store_true", help="rooms that nothing gets out of, in place of goals done")
     parser.add_argument("--truth-alone", action="store_true", help="only whether the rules allow what happened")
     parser.add_argument("--mutants", type=int, default=0, help="of each certificate")
     options = parser.parse_args()
     counts: Counter[str] = Counter()
+    times: dict[str, list[float]] = {"found in": [], "checked in": [], "kilobytes": []}
     for seed in range(options.seed, options.seed + options.count):
-        walk, begun = drawn_walk(seed), time.perf_counter()
-        goal = walk.goals[0]
+        walk = (drawn_room if options.rooms else drawn_walk)(seed)
         if lost := lost_truth(walk):
-            counts["FALSE: what happened is excluded"] += 1
+            counts[f"{FALSE}: what happened is excluded"] += 1
             print(seed, "what happened is excluded:", lost, flush=True)
-        if options.truth_alone:
-            counts["followed"] += 1
-            continue
-        try:
-            text = certificate_of(walk.text.splitlines(keepends=True), "done")
-        except NoCertificateError:
-            attained = holds(walk, goal, len(walk.places) - 1, {"x": [0, 0]}) if "circled" not in goal else None
-            counts[f"{goal[:10]} none, attained {attained}"] += 1
-            continue
-        verify(walk.text, text)
-        stated = json.loads(text)
-        outcome = _outcome(walk, stated)
-        counts[f"{goal[:10]} {outcome}"] += 1
-        seconds = time.perf_counter() - begun
-        print(
-            seed, goal, walk.world.heading, outcome, stated["given"], f"{len(text)} bytes, {seconds:.1f} s", flush=True
-        )
-        for mutant in mutants(stated, options.mutants, seed):
-            counts[f"mutant {_of_mutant(walk, stated, mutant)}"] += 1
+        if not options.truth_alone:
+            _count(walk, "impossible" if options.rooms else "done", seed, options.mutants, counts, times)
     print(dict(sorted(counts.items())))
-    return int(any("FALSE" in outcome for outcome in counts))
+    for what, values in times.items():
+        if values:
+            print(what, "median, 95 in 100:", *np.round(np.quantile(values, (0.5, 0.95)), 2))
+    return int(any(FALSE in outcome for outcome in counts))
+
+
+def _count(
+    walk: RecordedWalk, claim: str, seed: int, number: int, counts: Counter[str], times: dict[str, list[float]]
+) -> None:
+    """Count what becomes of the certificate of a walk, of mutants of it, and of forged ones."""
+    lines, goal, begun = walk.text.splitlines(keepends=True), walk.goals[0], time.perf_counter()
+    try:
+        text = certificate_of(lines, claim)
+    except NoCertificateError:
+        counts[f"{goal}: none"] += 1
+        _count_forged(walk, claim, seed, number, counts)
+        return
+    found = time.perf_counter()
+    verify(walk.text, text)
+    times["found in"].append(found - begun)
+    times["checked in"].append(time.perf_counter() - found)
+    times["kilobytes"].append(len(text) / 1000)
+    stated = json.loads(text)
+    outcome = _outcome(walk, stated)
+    counts[f"{goal}: {outcome}"] += 1
+    print(seed, goal, walk.world.heading, outcome, stated["given"], f"{found - begun:.1f} s", flush=True)
+    for mutant in mutants(stated, number, seed):
+        counts[f"mutant: {_of_mutant(walk, mutant, stated)}"] += 1
+
+
+def _count_forged(walk: RecordedWalk, claim: str, seed: int, number: int, counts: Counter[str]) -> None:
+    """Count what becomes of a certificate that was made for a checker that takes every goal to hold, and of mutants."""
+    forging = {"is_shut_in": lambda *_: True, "holds": lambda *_: True}
+    try:
+        with patch.multiple(CertificateCheck, **forging), patch.object(search, "_frames", _forged_frames):
+            stated = json.loads(certificate_of(walk.text.splitlines(keepends=True), claim))
+    except NoCertificateError:
+        return
+    for mutant in (stated, *mutants(stated, number, seed)):
+        outcome = _of_mutant(walk, mutant, None)
+        counts[f"forged: {outcome}"] += 1
+        if FALSE in outcome:
+            print(seed, "forged, and accepted:", walk.goals, mutant["meaning"], mutant["given"], flush=True)
+
+
+def _forged_frames(*about: Any) -> list[list[int]]:
+    """Return frames of felt verge, whatever they have in them, and one more."""
+    return [*felt_frames(*about), BARE_FRAME]
 
 
 def _outcome(walk: RecordedWalk, stated: dict[str, Any]) -> str:
-    """Return whether the claim of a certificate is true, in a word."""
+    """Return whether the claim of a certificate is true, in words."""
     if not is_given(walk, stated["given"]):
         return "given is false"
-    return "true" if holds(walk, walk.goals[0], stated["steps"][0], stated["meaning"]) else "FALSE"
+    (goal,) = walk.goals
+    if stated["claim"] == "done":
+        return "true" if holds(walk, goal, stated["steps"][0], stated["meaning"]) else FALSE
+    what = goal_of(goal, "impossible")[1]
+    name = what if what == OWN_NAME else walk.felt(*stated["meaning"][what]) or ""
+    return {"yes": FALSE, "no": "true", "open": "not known to be false"}[gets_out(walk, name)]
 
 
-def _of_mutant(walk: RecordedWalk, stated: dict[str, Any], mutant: dict[str, Any]) -> str:
-    """Return what becomes of a mutant of a certificate, in words."""
+def _of_mutant(walk: RecordedWalk, mutant: dict[str, Any], origin: dict[str, Any] | None) -> str:
+    """Return what becomes of a changed certificate, in words."""
     try:
         verify(walk.text, json.dumps(mutant))
-    except RefusedError:
+    except (RefusedError, ValueError):
         return "refused"
-    is_same = all(mutant[key] == stated[key] for key in ("goals", "steps", "meaning", "given"))
-    return "accepted, the same claim" if is_same else f"accepted, another claim: {_outcome(walk, mutant)}"
+    claim = ("goals", "steps", "meaning", "given")
+    if origin is not None and all(mutant[key] == origin[key] for key in claim):
+        return "accepted, the same claim"
+    return f"accepted, another claim: {_outcome(walk, mutant)}"
 
 
 if __name__ == "__main__":

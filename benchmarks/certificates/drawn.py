@@ -10,7 +10,9 @@ from shapely.affinity import rotate
 
 from benchmarks.certificates.recorded import RecordedWalk, recorded_walk
 from utak.geometry.kernels.arrays import XY
-from utak.kb.body import Command, Move
+from utak.kb.body import Command, Grasp, Move, Push, Release, Turn
+from utak.simulator.certificates.courses import TOUCH_NAMES, VERGE_LETTER
+from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.placing import robot_misplaced, standing
 from utak.simulator.world.world import Thing, World
 
@@ -23,9 +25,11 @@ def drawn_walk(seed: int) -> RecordedWalk:
     """Return a walk in a random world that attains its goal, or seems to."""
     random = np.random.default_rng([17, seed])
     world = _world(random)
-    walks: tuple[Callable[[np.random.Generator, World], Walk], ...] = (_returning, _cornered, _circling)
-    commands, goal = walks[seed % len(walks)](random, world)
-    return recorded_walk(world, commands, [goal])
+    walks: tuple[Callable[[np.random.Generator, World], Walk], ...] = (_returning, _cornered, _circling, _carrying)
+    draw = walks[seed % len(walks)]
+    world = _beside_thing(random, world) if draw is _carrying else world
+    commands, goal = draw(random, world)
+    return recorded_walk(world, commands, [goal], parameters=("x", "y"))
 
 
 def _near_grid(random: np.random.Generator, low: float, high: float) -> float:
@@ -102,3 +106,46 @@ def _circling(random: np.random.Generator, world: World) -> Walk:
         ring.pop(int(random.integers(4)))
     points = [*ring, ring[0], world.utak]
     return _commands(world, points, random), "circled(utak,x)"
+
+
+def _beside_thing(random: np.random.Generator, world: World) -> World:
+    """Return a world in which the robot wakes beside a thing, where one is found."""
+    things = [*standing(world), *((thing.name, thing.polygon) for thing in world.movable)]
+    for _ in range(MAX_TRIES if world.movable else 0):
+        x0, y0, x1, y1 = world.movable[0].polygon.bounds
+        here = _near_grid(random, x0 - 1.5, x1 + 1.5), _near_grid(random, y0 - 1.5, y1 + 1.5)
+        moved = world.moved({}, here)
+        if not robot_misplaced(world, shapely.Point(here), things) and _graspable(moved):
+            return moved
+    return world
+
+
+def _graspable(world: World) -> list[str]:
+    """Return the directions in which the robot feels a thing where it wakes."""
+    touches = Tabletop(world).look()[1]
+    return [name for name, letter in zip(TOUCH_NAMES, touches, strict=True) if letter not in (None, VERGE_LETTER)]
+
+
+def _carrying(random: np.random.Generator, world: World) -> Walk:
+    """Return a walk with something in hand, most often moved to where the robot woke, or near something else."""
+    commands: list[Command] = []
+    east, north = 0.0, 0.0
+    for _ in range(int(random.integers(1, 3))):
+        ways = _graspable(world)
+        commands.append(Grasp(str(random.choice(ways)) if ways and not commands else str(random.choice(TOUCH_NAMES))))
+        for _ in range(int(random.integers(1, 4))):
+            if random.random() < 0.2:
+                commands.append(Turn(float(random.choice([90.0, 45.0, -17.0]))))
+            else:
+                e, n = (_near_grid(random, -4, 4) * float(random.integers(2)) for _ in range(2))
+                commands.append(Push(e, n))
+                east, north = east + e, north + n
+        if random.random() < 0.5:
+            commands.append(Push(-east, -north))
+            east, north = 0.0, 0.0
+        if random.random() < 0.8:
+            commands.append(Release())
+            commands.append(Move(float(random.choice([-1, 0, 1])), float(random.choice([-1, 0, 1]))))
+    corner = random.choice(["northeast", "northwest", "southwest", "southeast"])
+    goals = ("at(utak,start)", "at(x,start)", "at(x,y)", "beside(x,y)", f"at(x,corner({corner}))")
+    return commands, str(random.choice(goals, p=(0.2, 0.3, 0.1, 0.1, 0.3)))

@@ -1,14 +1,18 @@
 """Episodes of given commands in given worlds, as far as certificates read them, with the true places of the robot."""
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Command
+from utak.simulator.certificates.courses import TOUCH_OFFSETS
 from utak.simulator.episode.record import action_entry
 from utak.simulator.run.embodiment import Embodiment
 from utak.simulator.world.physics import Tabletop
+from utak.simulator.world.table import project
 from utak.simulator.world.world import World
 
 
@@ -20,6 +24,22 @@ class RecordedWalk:
     text: str  # the episode
     goals: tuple[str, ...]
     places: tuple[XY, ...] = field(repr=False)  # of the robot at each step, squares, table frame
+    things: tuple[dict[str, Any], ...] = field(repr=False)  # the outlines of the movable things at each step
+    held: tuple[str | None, ...]  # the name of what is held at each step
+    touches: tuple[tuple[str | None, ...], ...] = field(repr=False)
+
+    def felt(self, step: int, touch: int) -> str | None:
+        """Return the name of the thing that a touch felt."""
+        square = self.felt_square(step, touch)
+        letter = self.touches[step][touch]
+        things = (one for one in self.world.movable if one.colour == letter)
+        return next((one.name for one in things if project(self.things[step][one.name]).covers(*square)), None)
+
+    def felt_square(self, step: int, touch: int) -> tuple[int, int]:
+        """Return the square of a touch, table frame."""
+        (x, y), (e, n), heading = self.places[step], TOUCH_OFFSETS[touch], math.radians(self.world.heading)
+        i = math.floor(x) + round(e * math.cos(heading) - n * math.sin(heading))
+        return i, math.floor(y) + round(e * math.sin(heading) + n * math.cos(heading))
 
 
 def recorded_walk(
@@ -38,11 +58,15 @@ def recorded_walk(
         "parameters": dict.fromkeys(parameters, "object"),
     }
     rows = [{"utak": "episode", "version": 1, "options": {"noise": 0.0, "kb": []}, "task": task}]
-    places = []
+    places, things, held, touches = [], [], [], []
     for step, command in enumerate([None, *commands]):
         seen = body.wake() if command is None else body.act(command)
         places.append(table.utak)
+        things.append(dict(table.polygons))
+        held.append(table.held)
+        touches.append(tuple(seen.touch))
         rows.append(
             {"step": step, "action": action_entry(command), "retina": list(seen.retina), "touch": list(seen.touch)}
         )
-    return RecordedWalk(world, "".join(json.dumps(row) + "\n" for row in rows), tuple(goals), tuple(places))
+    text = "".join(json.dumps(row) + "\n" for row in rows)
+    return RecordedWalk(world, text, tuple(goals), tuple(places), tuple(things), tuple(held), tuple(touches))

@@ -1,38 +1,74 @@
 """Whether what a certificate claims of a recorded walk holds on the true table, and is among what the rules allow."""
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import shapely
 
 from benchmarks.certificates.recorded import RecordedWalk
 from utak.geometry.counts.retina import FIELDS
-from utak.simulator.certificates.checker import Evidence, Sampling
-from utak.simulator.certificates.search import settle_all, waking_case
-from utak.simulator.world.table import Table
+from utak.simulator.certificates.checker import OWN_NAME, goal_of
+from utak.simulator.certificates.courses import Evidence, RefusedError, waking_case
+from utak.simulator.certificates.search import settle_all
+from utak.simulator.world.table import Table, project
 
 SLACK = 1e-5  # squares; what the checker allows for rounding
 
 
 def is_given(walk: RecordedWalk, given: Sequence[str]) -> bool:
-    """Return whether the grid lies as it is given."""
-    return "along(grid)" not in given or walk.world.heading % 90 == 0
+    """Return whether what is given is so; that verge lies nowhere within floor is so in all drawn worlds."""
+    outlines = [walk.world.verge, *walk.things[0].values()]
+    if "along(grid)" in given and walk.world.heading % 90 != 0:
+        return False
+    if "whole(squares)" in given:
+        for outline in outlines:
+            if abs(outline.area - project(outline).covered.sum()) > SLACK:
+                return False
+    parts = [_covered(walk, name, 0) for name in walk.things[0]] if "apart(things)" in given else []
+    pairs = itertools.combinations(parts, 2)
+    return not any(
+        abs(i - a) + abs(j - b) <= 1 for one, other in pairs for (i, j), (a, b) in itertools.product(one, other)
+    )
 
 
 def holds(walk: RecordedWalk, goal: str, step: int, meaning: Mapping[str, Sequence[int]]) -> bool:
     """Return whether a goal holds at a step."""
+    kind, what, name, _ = goal_of(goal, "done")
+    if kind == "circled":
+        return _winds(walk, step, *meaning[name])
+    if kind == "corner":
+        return _is_at_corner(walk, name, step, None if what == OWN_NAME else walk.felt(*meaning[what]))
     here, start = walk.places[step], walk.places[0]
-    if goal == "at(utak,start)":
+    if kind == "start" and what == OWN_NAME:
         return all(abs(a - b) <= 1 + SLACK for a, b in zip(here, start, strict=True))
-    if goal.startswith("at(utak,corner("):
-        return _is_at_corner(walk, goal[15:-2], step)
-    return _winds(walk, step, *meaning["x"])
+    one = _squares(walk, what, step, meaning)
+    other = {_square(start)} if kind == "start" else _squares(walk, name, step, meaning)
+    away = 0 if kind == "start" else 1
+    return any(max(abs(i - a), abs(j - b)) <= away for i, j in one for a, b in other)
+
+
+def _square(place: Sequence[float]) -> tuple[int, int]:
+    return math.floor(place[0]), math.floor(place[1])
+
+
+def _squares(walk: RecordedWalk, name: str, step: int, meaning: Mapping[str, Sequence[int]]) -> set[tuple[int, int]]:
+    """Return the squares that the robot or the thing felt covers."""
+    if name == OWN_NAME:
+        return {_square(walk.places[step])}
+    thing = walk.felt(*meaning[name])
+    return set() if thing is None else _covered(walk, thing, step)
+
+
+def _covered(walk: RecordedWalk, thing: str, step: int) -> set[tuple[int, int]]:
+    part = project(walk.things[step][thing])
+    return {(part.west + int(i), part.south + int(j)) for j, i in zip(*part.covered.nonzero(), strict=True)}
 
 
 def lost_truth(walk: RecordedWalk) -> str:
     """Return where the checker's rules exclude what really happened, in words; "" where they never do."""
-    evidence, table = Evidence(walk.text), Table(walk.world)
+    evidence = Evidence(walk.text)
+    tables = [Table(walk.world.moved(things, walk.places[0])) for things in walk.things]
     quarters, angle = divmod(walk.world.heading, 90)
 
     def turned(x: float, y: float, quarters: int) -> tuple[float, float]:
@@ -45,84 +81,94 @@ def lost_truth(walk: RecordedWalk) -> str:
     squares = [(math.floor(x), math.floor(y)) for x, y in middles]
     west, south = squares[0]
 
-    def is_occupied(square: tuple[int, int]) -> bool:
-        x, y = turned(square[0] + west + 0.5, square[1] + south + 0.5, quarters)
-        i, j = math.floor(x), math.floor(y)
+    def true_square(square: tuple[int, int]) -> tuple[int, int]:
+        return _square(turned(square[0] + west + 0.5, square[1] + south + 0.5, quarters))
+
+    def is_occupied(square: tuple[int, int], step: int) -> bool:
+        (i, j), table = true_square(square), tables[step]
         return not (0 <= i < table.width and 0 <= j < table.height) or bool(table.colours[j, i])
 
-    case, samples = waking_case(angle), Sampling(angle)
+    case = waking_case(angle, evidence)
     for step, (place, square) in enumerate(zip(places, squares, strict=True)):
         if step:
-            end = case.ends(evidence).get((square[0] - west, square[1] - south))
+            try:
+                end = case.ends(evidence).get((square[0] - west, square[1] - south))
+            except RefusedError:
+                return ""  # the rules say nothing of what follows
             if end is None:
                 return f"step {step}: it cannot have ended there"
-            case = end
+            case = end._replace(occupied=dict(end.occupied))
         for replays in (False, True):
-            contradiction = settle_all(case, evidence, samples)[1]
+            contradiction = settle_all(case, evidence)[1]
             if contradiction is not None:
                 return f"step {step}: contradicted by {contradiction.line}"
-            if wrong := [spot for spot, occupied in case.occupied.items() if occupied != is_occupied(spot)]:
-                return f"step {step}: {wrong[0]} is not so"
-            ends = zip(place, places[0], case.ways[step], case.waking, (west, south), strict=True)
-            for here, woke, way, waking, edge in ends:
-                if not (way[0] - SLACK <= here - woke <= way[1] + SLACK):
-                    return f"step {step}: the way is another"
-                if not (waking[0] - SLACK <= woke - edge <= waking[1] + SLACK):
-                    return f"step {step}: the point of waking is another"
+            for i, j, since in case.occupied:
+                for when in (since, step):
+                    is_known = case.at((i, j), when)
+                    if is_known is not None and is_known != is_occupied((i, j), when):
+                        return f"step {step}: {(i, j)} is not so at step {when}"
+            for here, edge, side in zip(place, (west, south), case.places[step], strict=True):
+                if not (side[0] / evidence.unit - SLACK <= here - edge <= side[1] / evidence.unit + SLACK):
+                    return f"step {step}: the place is another"
+            thing = walk.held[step]
+            within = {true_square(one) for one in case.held[step]}
+            if thing is not None and not _covered(walk, thing, step) <= within:
+                return f"step {step}: what is held lies elsewhere"
             if not replays:
                 again = case.replayed(evidence)
                 if again is None:
                     return f"step {step}: it cannot have ended there, played again"
-                case = again
+                case = again._replace(occupied=dict(again.occupied))
     return ""
 
 
-def _is_at_corner(walk: RecordedWalk, name: str, step: int) -> bool:
-    """Return whether the robot is at a corner beyond which no field shows nothing but floor."""
+def _is_at_corner(walk: RecordedWalk, name: str, step: int, thing: str | None) -> bool:
+    """Return whether the robot or a thing is at a corner beyond which no field shows nothing but floor."""
     heading = math.radians(walk.world.heading)
     e, n = (1 if "east" in name else -1), (1 if "north" in name else -1)
     u, v = e * math.cos(heading) - n * math.sin(heading), e * math.sin(heading) + n * math.cos(heading)
-    table = Table(walk.world)
 
-    def occupied(i: int, j: int) -> bool:
-        return not (0 <= i < table.width and 0 <= j < table.height) or bool(table.colours[j, i])
+    def occupied(i: int, j: int, step: int, without: str | None = None) -> bool:
+        things = {other: outline for other, outline in walk.things[step].items() if other != without}
+        table = walk.world
+        is_off = not (0 <= i < table.width and 0 <= j < table.height)
+        return is_off or any(project(one).covers(i, j) for one in (table.verge, *things.values()))
 
     def reach(i: int, j: int) -> float:
         return u * (i + (u > 0)) + v * (j + (v > 0))
 
-    own = [tuple(math.floor(p) for p in place) for place in walk.places[: step + 1]]
+    place = walk.places[step]
+    bounds = walk.things[step][thing].bounds if thing else (*place, *place)
+    ends = bounds[2 if u > 0 else 0], bounds[3 if v > 0 else 1]
+    own = [_square(place) for place in walk.places[: step + 1]]
+    at = _square(ends)
     found = []
-    for i in range(own[-1][0] - 1, own[-1][0] + 2):
-        for j in range(own[-1][1] - 1, own[-1][1] + 2):
+    for i in range(at[0] - 2, at[0] + 3):
+        for j in range(at[1] - 2, at[1] + 3):
             edge = i + (u > 0), j + (v > 0)
-            near = all(abs(a - b) <= 1 + SLACK for a, b in zip(edge, walk.places[step], strict=True))
-            walls = occupied(i + int(np.sign(u)), j) and occupied(i, j + int(np.sign(v)))
-            if near and walls and (not occupied(i, j) or (i, j) == own[-1]):
+            near = all(abs(a - b) <= 1 + SLACK for a, b in zip(edge, ends, strict=True))
+            ahead = (i + int(np.sign(u)), j), (i, j + int(np.sign(v)))
+            walls = all(occupied(*square, step, thing) for square in ahead)
+            if near and walls and (not occupied(i, j, step, thing) or (i, j) == own[-1]):
                 found.append(reach(i, j))
     seen = [reach(*square) for square in own]
     cosine, sine = math.cos(heading), math.sin(heading)
-    for x, y in own:
+    for k, (x, y) in enumerate(own):
         for east, north, side in FIELDS:
             if side == 1:
                 i, j = x + round(east * cosine - north * sine), y + round(east * sine + north * cosine)
-                if not occupied(i, j):
+                if (east, north) != (0, 0) and not occupied(i, j, k):
                     seen.append(reach(i, j))
     return bool(found) and max(found) >= max(seen) - SLACK
 
 
 def _winds(walk: RecordedWalk, step: int, felt: int, touch: int) -> bool:
-    """Return whether the track winds about the whole of a thing that covers the square of a touch."""
-    heading = math.radians(walk.world.heading)
-    e, n = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))[touch]
-    x, y = (math.floor(p) for p in walk.places[felt])
-    i = x + round(e * math.cos(heading) - n * math.sin(heading))
-    j = y + round(e * math.sin(heading) + n * math.cos(heading))
-    square = shapely.box(i, j, i + 1, j + 1)
-    things = [thing.polygon for thing in walk.world.movable if thing.polygon.intersection(square).area > 0]
+    """Return whether the track winds about the whole of the thing that a touch felt; its ends are in one square."""
+    thing = walk.felt(felt, touch)
     track = np.array([*walk.places[: step + 1], walk.places[0]])
-    if math.dist(track[-2], track[-1]) > SLACK:
+    if thing is None or _square(walk.places[step]) != _square(walk.places[0]):
         return False
-    return any(abs(_winding(track, np.array(thing.representative_point().coords[0]))) >= 1 for thing in things)
+    return abs(_winding(track, np.array(walk.things[step][thing].representative_point().coords[0]))) >= 1
 
 
 def _winding(track: "np.ndarray[tuple[int, int], np.dtype[np.float64]]", centre: object) -> int:

@@ -9,33 +9,36 @@ import itertools
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
-from fractions import Fraction
-from math import floor
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
     BARRED_GOAL,
+    OF_THINGS,
     OF_WALLS,
+    OWN_NAME,
     RIGHT_ANGLE,
-    SAMPLED_FIELDS,
     VERDICTS_SHOWN,
-    VERGE_LETTER,
     CertificateCheck,
-    Course,
-    Evidence,
-    RefusedError,
-    Sampling,
-    Spot,
     claims_taken,
     goal_of,
-    side_of,
-    turned,
+)
+from utak.simulator.certificates.courses import (
+    SAMPLED_FIELDS,
+    TOUCH_NAMES,
+    VERGE_LETTER,
+    Course,
+    Evidence,
+    Key,
+    RefusedError,
+    Spot,
+    sampled,
+    waking_case,
 )
 
 MAX_CASES = 20000  # that are tried; a bound on time
-GOAL_REACH = 2  # squares about a place: on what lies within it goals at that place rest; derived from the checker
 StatedLine = list[Any]
 
 
@@ -47,15 +50,29 @@ class TreatedBranch(NamedTuple):
     """A case that was shut or in which the goals hold."""
 
     lines: list[StatedLine]
-    needed: set[Spot]  # the squares settled before it on which it rests
+    needed: set[Key]  # what was settled before it on which it rests
 
 
 class UsefulCount(NamedTuple):
     """A sum of counts that settled something."""
 
     line: StatedLine
-    sampled: frozenset[Spot]
-    settled: frozenset[Spot]
+    sampled: frozenset[Key]
+    settled: frozenset[Key]
+
+
+class ReadFacts(dict[Key, bool]):
+    """Settled facts, which remember what was asked for."""
+
+    def __init__(self, facts: dict[Key, bool]) -> None:
+        super().__init__(facts)
+        self.read: set[Key] = set()
+
+    def get(self, key: Key, default: Any = None) -> Any:
+        """Return whether a square is occupied, and remember that it was asked."""
+        if key in self:
+            self.read.add(key)
+        return super().get(key, default)
 
 
 def is_certificate(head: bytes) -> bool:
@@ -74,37 +91,27 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
         )
     episode = Evidence("".join(lines))
     if verdict == "impossible" and not any(map(BARRED_GOAL.fullmatch, episode.goals)):
-        raise NoCertificateError("that a goal is impossible is shown of in(utak,room(next)) and through(utak,D) alone")
+        raise NoCertificateError("that a goal is impossible is shown of in(T,room(next)) and through(T,D) alone")
     try:
-        certificate = _likely(episode, verdict)
-        search = _Search(episode, CertificateCheck(episode, certificate))
-        if any(kind != "thing" for kind, _, _ in search.checker.goals):
-            lines_found = search.lines(0)
-            try:
-                lines_found += [line for angle in range(1, RIGHT_ANGLE) for line in search.lines(angle)]
-            except (RefusedError, NoCertificateError) as why:
-                if ["holds"] not in lines_found:
-                    raise NoCertificateError(str(why)) from None
-                certificate["given"].append(ALONG_GRID)
-            if ["holds"] not in lines_found:
-                raise NoCertificateError("no course of events was found that agrees with the impressions")
-            certificate["cases"] = lines_found
+        return json.dumps(_certificate(episode, verdict), separators=(",", ":")) + "\n"
     except RefusedError as why:
         raise NoCertificateError(str(why)) from None
-    return json.dumps(certificate, separators=(",", ":")) + "\n"
 
 
-def _likely(episode: Evidence, claim: str) -> dict[str, Any]:
-    """Return a certificate without cases: of several, one whose goals hold where all went as commanded."""
+def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
+    """Return the certificate of a claim; raises RefusedError or NoCertificateError where none is found."""
     refusal = RefusedError("the goals name nothing that was felt")
+    likely: Course | None = None
     candidates = list(_candidates(episode, claim))
     for certificate in candidates:
+        checker = CertificateCheck(episode, certificate)
+        if all(goal[:2] == ("near", OWN_NAME) for goal in checker.goals):
+            return certificate
         try:
-            checker = CertificateCheck(episode, certificate)
-            has_order = any(order for _, _, order in checker.goals)
-            if any(kind != "thing" for kind, _, _ in checker.goals) and (has_order or len(candidates) > 1):
-                certificate["steps"] = _Search(episode, checker).likely_steps()
-                CertificateCheck(episode, certificate)
+            if claim == "impossible" or len(candidates) > 1 or any(goal[3] for goal in checker.goals):
+                likely = likely or _likely_course(episode)
+                certificate["steps"] = _likely_steps(checker, likely)
+            certificate["cases"] = _Search(episode, CertificateCheck(episode, certificate)).all_lines(certificate)
         except RefusedError as why:
             refusal = why
         else:
@@ -112,36 +119,117 @@ def _likely(episode: Evidence, claim: str) -> dict[str, Any]:
     raise refusal
 
 
+def _likely_course(episode: Evidence) -> Course:
+    """Return a course that agrees with all impressions; raises RefusedError for none."""
+    for angle in range(RIGHT_ANGLE):
+        left = [waking_case(angle, episode)]
+        for _ in range(MAX_CASES):
+            if not left:
+                break
+            case = left.pop()
+            case = case._replace(occupied=dict(case.occupied))
+            if settle_all(case, episode)[1] is not None:
+                continue
+            if case.step == episode.last:
+                return case
+            ends = case.ends(episode)
+            whole = max(ends, key=lambda end: sum(abs(a - b) for a, b in zip(end, case.squares[-1], strict=True)))
+            left += [ends[end] for end in sorted(ends, key=lambda end: end == whole)]
+    raise RefusedError("no course of events was found that agrees with the impressions")
+
+
+def _likely_steps(checker: CertificateCheck, case: Course) -> list[int]:
+    """Return the steps at which the goals hold in a case; raises RefusedError for none."""
+    if checker.claim == "impossible":
+        _frame(checker, case)
+        return [checker.episode.last]
+    steps: list[int] = []
+    last, earliest = checker.episode.last, 0
+    ordered = [number for number, goal in enumerate(checker.goals) if goal[3]]
+    for number, goal in enumerate(checker.goals):
+        tried = range(earliest, last) if number in ordered[:-1] else range(0)
+        found = next((k for k in (*tried, last) if checker.holds(goal, case, k, [])), None)
+        if found is None:
+            raise RefusedError(f"nothing shows {checker.texts[number]}")
+        earliest = found if number in ordered else earliest
+        steps.append(found)
+    return steps
+
+
+def _frame(checker: CertificateCheck, case: Course, likely: Sequence[int] = ()) -> list[int]:
+    """Return a rectangle that shuts in what is to leave it; raises RefusedError for none."""
+    frames = itertools.chain([list(likely)] if likely else [], _frames(checker, case))
+    found = next((frame for frame in frames if checker.is_shut_in(checker.goals[0][1], case, frame)), None)
+    if found is None:
+        raise RefusedError(f"nothing shows that {checker.texts[0]} is impossible")
+    return found
+
+
+def _frames(checker: CertificateCheck, case: Course) -> Iterator[list[int]]:
+    """Yield the rectangles of felt verge about the square of waking."""
+    felt = {
+        square
+        for step, touches in enumerate(checker.episode.touches)
+        for touch, letter in enumerate(touches)
+        if letter == VERGE_LETTER and (square := case.touch(step, touch))
+    }
+    rows: dict[int, set[int]] = defaultdict(set)  # felt as verge, of each column
+    for column, row in felt:
+        rows[column].add(row)
+    frames: list[tuple[int, list[int]]] = []  # and how many squares of them were not felt
+    for w, e in itertools.combinations(sorted(rows), 2):
+        for low, high in itertools.combinations_with_replacement(sorted(rows[w] & rows[e]), 2):
+            s, n = low - 1, high + 1
+            if e - w > 1 and {(w + 1, s), (e - 1, s), (w + 1, n), (e - 1, n)} <= felt:
+                edge = {*itertools.product((w, e), range(low, n)), *itertools.product(range(w + 1, e), (s, n))}
+                frames.append((len(edge - felt), [w, s, e, n]))
+    yield from (frame for _, frame in sorted(frames))
+
+
 def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
     """Yield certificates without cases, for each thing that each parameter may mean."""
     texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
-    head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
     if claim == "impossible":
-        yield head | {"steps": [episode.last], "meaning": {}, "given": [*OF_WALLS], "cases": []}
-        return
-    goals = [goal_of(text) for text in texts]
+        texts = [text for text in texts if BARRED_GOAL.fullmatch(text)][:1]
+    goals = [goal_of(text, claim) for text in texts]
     felt: dict[str, list[StatedLine]] = {}
-    for kind, name, _ in goals:
-        if kind in ("thing", "circled"):
-            steps = [episode.last] if kind == "thing" else range(episode.last, -1, -1)
-            places: dict[str, StatedLine] = {}  # the last touch of each colour
-            for step in steps:
-                for touch, letter in enumerate(episode.touches[step]):
-                    if letter not in (None, VERGE_LETTER):
-                        places.setdefault(letter, [step, touch])
-            colours = [fact[-2] for fact in episode.claims if fact.startswith(f"colour({name},")]
-            places = {letter: place for letter, place in places.items() if letter in (colours or places)}
-            if kind == "thing" and len(places) > 1:
-                raise NoCertificateError(f"several things are felt, and nothing tells which is {name}")
-            if name not in felt or kind == "thing":
-                felt[name] = list(places.values())
+    for kind, what, name, _ in goals:
+        if what != OWN_NAME:
+            felt.setdefault(what, _touches(episode, what, "grasp" if kind != "shut" else "any"))
+        if kind in ("near", "circled"):
+            is_near = kind == "near" and what == OWN_NAME
+            if is_near or name not in felt:
+                felt[name] = _touches(episode, name, "last" if is_near else "any")
     for meaning in itertools.product(*felt.values()):
         means = dict(zip(felt, meaning, strict=True))
-        taken = [
-            fact for name, (step, n) in means.items() for fact in claims_taken(episode, name, episode.touches[step][n])
-        ]
-        steps = [episode.last] * len(goals)
-        yield head | {"steps": steps, "meaning": means, "given": list(dict.fromkeys(taken)), "cases": []}
+        letters = {name: episode.touches[step][touch] for name, (step, touch) in means.items()}
+        if len(set(letters.values())) < len(letters):
+            continue
+        taken = [fact for name, letter in letters.items() for fact in claims_taken(episode, name, letter)]
+        given = list(dict.fromkeys(taken))
+        if claim == "impossible":
+            given += OF_WALLS + (OF_THINGS if means else [])
+        head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
+        yield head | {"steps": [episode.last] * len(goals), "meaning": means, "given": given, "cases": []}
+
+
+def _touches(episode: Evidence, name: str, which: str) -> list[StatedLine]:
+    """Return touches [step, touch], newest first, that may be of a thing: at the `last` step, before a `grasp`."""
+    colours = [fact[-2] for fact in episode.claims if fact.startswith(f"colour({name},")]
+    found: list[StatedLine] = []
+    for step in range(episode.last, -1 if which != "last" else episode.last - 1, -1):
+        for touch, letter in enumerate(episode.touches[step]):
+            grasp = {"do": "grasp", "direction": TOUCH_NAMES[touch]}
+            is_grasped = step < episode.last and episode.actions[step + 1] == grasp
+            if (
+                letter not in (None, VERGE_LETTER)
+                and letter in (colours or letter)
+                and (which != "grasp" or is_grasped)
+            ):
+                found.append([step, touch])
+    if which == "last" and len({episode.touches[step][touch] for step, touch in found}) > 1:
+        raise NoCertificateError(f"several things are felt, and nothing tells which is {name}")
+    return found[:1] if which == "last" else found
 
 
 class _Search:
@@ -149,69 +237,42 @@ class _Search:
 
     def __init__(self, episode: Evidence, checker: CertificateCheck) -> None:
         self.episode, self.checker = episode, checker
-        self.samples = Sampling(0)
+        self.frame: list[int] = []  # that shut in what is to leave it before; of `impossible`
         self.cases = 0
 
-    def likely_steps(self) -> list[int]:
-        """Return the steps at which the goals hold where all went as commanded; raises RefusedError for none."""
-        unmet = self.checker.texts[0]
-        for angle in range(RIGHT_ANGLE):
-            self.samples = Sampling(angle)
-            case = self.likely_case(angle)
-            steps = [] if case is None else self.steps_of(case)
-            if len(steps) == len(self.checker.goals):
-                return steps
-            unmet = unmet if case is None else self.checker.texts[len(steps)]
-        raise RefusedError(f"nothing shows {unmet}")
-
-    def likely_case(self, angle: int) -> Course | None:
-        """Return the case in which all went as commanded from the middle of a square; None where it cannot be."""
-        case, place = waking_case(angle), [Fraction(1, 2), Fraction(1, 2)]
-        while settle_all(case, self.episode, self.samples)[1] is None:
-            if case.step == self.episode.last:
-                return case.replayed(self.episode)
-            motion = turned(self.episode.motion(case.step + 1), angle)
-            place = [p + v for p, v in zip(place, motion, strict=True)]
-            end = case.ends(self.episode).get((floor(place[0]), floor(place[1])))
-            if end is None:
-                return None
-            case = end
-        return None
-
-    def steps_of(self, case: Course) -> list[int]:
-        """Return the steps at which the goals hold in a case, up to the first that does not."""
-        steps: list[int] = []
-        ordered = [number for number, (_, _, order) in enumerate(self.checker.goals) if order]
-        for number, goal in enumerate(self.checker.goals):
-            earliest = max((steps[other] for other in ordered if other < number), default=0)
-            tried = range(earliest, self.episode.last) if number in ordered[:-1] else []
-            found = [k for k in (*tried, self.episode.last) if self.checker.holds(goal, case, k, self.samples)]
-            if not found:
-                break
-            steps.append(found[0])
-        return steps
+    def all_lines(self, certificate: dict[str, Any]) -> list[StatedLine]:
+        """Return the lines of a certificate, which is given that the grid lies along the axes where that is needed."""
+        found = self.lines(0)
+        try:
+            found += [line for angle in range(1, RIGHT_ANGLE) for line in self.lines(angle)]
+        except (RefusedError, NoCertificateError) as why:
+            if not any(line[0] == "holds" for line in found):
+                raise NoCertificateError(str(why)) from None
+            certificate["given"].append(ALONG_GRID)
+        return found
 
     def lines(self, angle: int) -> list[StatedLine]:
         """Return the lines that treat all cases of one orientation of the grid."""
-        self.samples = Sampling(angle)
-        return [["angle", angle], *self.branch(waking_case(angle)).lines]
+        return [["angle", angle], *self.branch(waking_case(angle, self.episode)).lines]
 
     def branch(self, case: Course) -> TreatedBranch:
         """Return the lines that treat a case; raises NoCertificateError where it may be and the goals may not hold."""
         self.cases += 1
         if self.cases > MAX_CASES:
             raise NoCertificateError("too much may have happened for the search of a certificate")
-        counts, shut = settle_all(case, self.episode, self.samples)
+        case = case._replace(occupied=dict(case.occupied))
+        counts, shut = settle_all(case, self.episode)
         lines: list[StatedLine] = []
-        needed: set[Spot] = set()
+        needed: set[Key] = set()
         if shut is not None:
             lines, needed = [shut.line], set(shut.sampled)
         else:
-            again: Course | None = case
-            if any(low != high for way in case.ways for low, high in way):
-                lines, needed = [["replay"]], _free(case, set[Spot]().union(*case.swept))
-                again = case.replayed(self.episode)
+            facts = ReadFacts(case.occupied)
+            again = case._replace(occupied=facts).replayed(self.episode)
+            if again is None or (again.places, again.swept) != (case.places, case.swept):
+                lines, needed = [["replay"]], facts.read
             if again is not None:
+                again = again._replace(occupied=case.occupied)
                 treated = self.shown(again) if again.step == self.episode.last else self.branches(again)
                 lines, needed = lines + treated.lines, needed | treated.needed
         kept: list[StatedLine] = []
@@ -224,79 +285,95 @@ class _Search:
     def branches(self, case: Course) -> TreatedBranch:
         """Return the lines that treat each end of the next command."""
         lines: list[StatedLine] = []
-        needed: set[Spot] = set()
-        for square, one in case.ends(self.episode).items():
+        facts = ReadFacts(case.occupied)
+        needed = facts.read
+        for square, one in case._replace(occupied=facts).ends(self.episode).items():
             treated = self.branch(one)
             lines += [["end", *square], *treated.lines]
-            needed |= treated.needed | _free(case, one.swept[-1])
+            needed = needed | treated.needed
         return TreatedBranch(lines, needed)
 
     def shown(self, case: Course) -> TreatedBranch:
         """Return the line that shows the goals; raises RefusedError where they may not hold."""
-        needed: set[Spot] = set()
+        if self.checker.claim == "impossible":
+            self.frame = _frame(self.checker, case, self.frame)
+        facts = ReadFacts(case.occupied)
+        case = case._replace(occupied=facts)
         for text, goal, step in zip(self.checker.texts, self.checker.goals, self.checker.steps, strict=True):
-            if not self.checker.holds(goal, case, step, self.samples):
+            if not self.checker.holds(goal, case, step, self.frame):
                 raise RefusedError(f"nothing shows that {text} holds in all that may have happened")
-            if goal[0] == "shut_in":
-                needed |= _free(case, case.occupied)
-            needed |= {square for square in case.occupied if _are_near(square, case.squares[step])}
-        return TreatedBranch([["holds"]], needed)
+        return TreatedBranch([["holds", *self.frame]], facts.read)
 
 
-def settle_all(case: Course, episode: Evidence, samples: Sampling) -> tuple[list[UsefulCount], UsefulCount | None]:
+def settle_all(case: Course, episode: Evidence) -> tuple[list[UsefulCount], UsefulCount | None]:
     """Settle all squares that single fields settle; return how, and the count that contradicts the case."""
-    for step in range(case.step):  # the robot saw the same squares before, and other counts of them
-        if case.squares[step] == case.squares[-1]:
-            for field in sorted(SAMPLED_FIELDS):
-                if episode.ranges[step, field] != episode.ranges[case.step, field]:
-                    terms = [(case.step, field, 1), (step, field, -1)]
-                    if case.settle(episode, samples, terms):
-                        return [], UsefulCount(["count", *map(list, terms)], frozenset(), frozenset())
-    counts: list[UsefulCount] = []
-    holders: dict[Spot, list[tuple[int, int]]] = {}
+    carried = sorted({step for steps in case.changes.values() for step in steps})
+    since = [max((k for k in carried if k <= step), default=0) for step in range(case.step + 1)]
+    places = {place: step for step, place in reversed([*enumerate(zip(case.squares, since, strict=True))])}
+    before = places[case.squares[-1], since[-1]]  # the first visit while all lay as it lies now
     fields = [(case.step, field) for field in sorted(SAMPLED_FIELDS)]
+    if before < case.step:  # the robot saw the same squares before, and is told nothing new of them
+        fields = [(k, field) for k, field in fields if episode.ranges[before, field] != episode.ranges[k, field]]
+    for step, field in fields if before < case.step else ():
+        terms = [(step, field, 1), (before, field, -1)]
+        if case.settle(episode, terms):
+            return [], UsefulCount(["count", *map(list, terms)], frozenset(), frozenset())
+    counts: list[UsefulCount] = []
     while fields:
-        fresh: set[Spot] = set()
+        fresh: set[Key] = set()
         for step, field in fields:
-            sampled = frozenset(_sampled(case, samples, step, field))
-            unknown = sampled - case.occupied.keys()
-            contradicts = case.settle(episode, samples, [(step, field, 1)])
-            count = UsefulCount(["count", [step, field, 1]], sampled, unknown & case.occupied.keys())
+            keys = _keys(case, step, field)
+            if not _tells(case, episode, keys, step, field):
+                continue
+            unknown = keys.keys() - case.occupied.keys()
+            contradicts = case.settle(episode, [(step, field, 1)])
+            settled = frozenset(unknown & case.occupied.keys())
+            count = UsefulCount(["count", [step, field, 1]], frozenset(keys), settled)
             if contradicts:
                 return counts, count
-            if count.settled:
+            if settled:
                 counts.append(count)
-                fresh |= count.settled
-        holders = holders or _holders(case, samples)
-        fields = sorted({holder for square in fresh for holder in holders[square]})
+                fresh |= settled
+        holding, holders = _holders(case.angle), set[tuple[int, int]]()
+        for ((column, row), _), step in places.items():
+            for i, j, k in fresh:
+                found = holding.get((i - column, j - row))
+                if found and (not carried or case.key((i, j), step)[2] == k):
+                    for field in found:
+                        holders.add((step, field))
+        fields = sorted(holders)
     return counts, None
 
 
-def _sampled(case: Course, samples: Sampling, step: int, field: int) -> Iterator[Spot]:
-    """Yield the squares that a field samples at a step."""
-    column, row = case.squares[step]
-    return ((column + i, row + j) for i, j in samples.weights[field])
-
-
-def _holders(case: Course, samples: Sampling) -> dict[Spot, list[tuple[int, int]]]:
-    """Return the fields, (step, field) each, that sample each square."""
-    found: dict[Spot, list[tuple[int, int]]] = defaultdict(list)
-    for step in range(case.step + 1):
-        for field in sorted(SAMPLED_FIELDS):
-            for square in _sampled(case, samples, step, field):
-                found[square].append((step, field))
+@cache
+def _holders(angle: int) -> dict[Spot, list[int]]:
+    """Return the fields that sample each square, which is an offset from that of the robot."""
+    found: dict[Spot, list[int]] = defaultdict(list)
+    for field in sorted(SAMPLED_FIELDS):
+        for square in sampled(angle)[field][0]:
+            found[square].append(field)
     return found
 
 
-def waking_case(angle: int) -> Course:
-    """Return the case of waking with one orientation of the grid."""
-    return Course(angle, (side_of(0), side_of(0)), {})
+def _keys(case: Course, step: int, field: int) -> dict[Key, int]:
+    """Return what a field samples at a step, and how often."""
+    (column, row), squares = case.squares[step], sampled(case.angle)[field][0]
+    if not case.changes:
+        return {(column + i, row + j, 0): weight for (i, j), weight in squares.items()}
+    return {case.key((column + i, row + j), step): weight for (i, j), weight in squares.items()}
 
 
-def _free(case: Course, squares: Iterable[Spot]) -> set[Spot]:
-    """Return those of some squares that are settled to be free."""
-    return {square for square in squares if not case.occupied.get(square, True)}
-
-
-def _are_near(one: Spot, other: Spot) -> bool:
-    return max(abs(one[0] - other[0]), abs(one[1] - other[1])) <= GOAL_REACH
+def _tells(case: Course, episode: Evidence, keys: dict[Key, int], step: int, field: int) -> bool:
+    """Return whether a single field may settle a square or contradict the case."""
+    least, most = episode.ranges[step, field]
+    low = high = heaviest = 0
+    for key, weight in keys.items():
+        state = case.occupied.get(key)
+        if state is not False:
+            high += weight
+            if state:
+                low += weight
+            else:
+                heaviest = max(heaviest, weight)
+    least -= sampled(case.angle)[field][1]
+    return low + heaviest > most or high - heaviest < least

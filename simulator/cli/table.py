@@ -156,6 +156,9 @@ RUN = (
         "draw the true table, which the robot does not see, on stderr after every step; on a terminal in place",
     ),
 )
+CERTIFICATES = value(
+    "--certificate", "FOLDER", "write each episode there, with why its verdict follows, for `utak verify`, or why not"
+)
 TEST = (
     value("folders", "FOLDER", "a scenario, or a folder of scenarios", nargs="+"),
     *SETTINGS,
@@ -165,7 +168,8 @@ TEST = (
     value("--junit", "FILE", "write all outcomes to this file as JUnit XML"),
     value("--csv", "FILE", "write the points of all scenarios to this file as a table"),
     flag("--times", "say in --json and --junit how long each scenario took"),
-    flag("--force", "let --junit and --csv overwrite files of other kinds"),
+    CERTIFICATES,
+    flag("--force", "let --junit, --csv and --certificate overwrite files of other kinds"),
 )
 SWEEP = (
     value("scenarios", "SCENARIO", "a scenario, or a folder of scenarios", nargs="+"),
@@ -185,6 +189,7 @@ SWEEP = (
     value("--seconds", "S", "end a run that takes longer than S seconds", RUN_SECONDS),
     *ROBOT_OPTIONS,
     value("--svg", "FILE", "draw success rates and numbers of commands"),
+    CERTIFICATES,
     flag("--json", "print the summary as one JSON object"),
 )
 CHECK = (
@@ -224,12 +229,14 @@ QUERY = (
     *SETTINGS,
 )
 PLAN = (STORY, at("the step whose plan is shown (0: on waking)"), flag("--json", "print the plan as one JSON object"))
+TOLD_CERTIFICATE = value("--certificate", "FILE", "a certificate of the run, which is told with its verdict")
 DEPTHS = ("short", "mid", "long")  # kb.evidence.reason.Depth, which every command would load here
 EXPLAIN = (
     STORY,
     value("fact", "FACT", "a fact, a goal or verdict(V); without it the command of the step", nargs="?"),
     value("--whynot", "FACT", "why a fact is not believed: what is missing or in the way"),
     value("--cell", "N", "a cell of the impression of the step, 0 to 159", _cell),
+    TOLD_CERTIFICATE,
     at("the step (default: the last)"),
     value("--depth", None, "how much of the tree is printed (default mid)", choices=DEPTHS, default="mid"),
     flag("--json", "print the whole tree as one JSON object"),
@@ -261,6 +268,7 @@ REPLAY = (
         )
     ),
     value("--kb", "FILE", "with --html: a file of rules of the run; repeatable", action="append", default=[]),
+    value("--certificate", "FILE", "with --html: a certificate, which the page draws and checks"),
     flag("--force", "overwrite a file that is no page or picture"),
 )
 VERIFY = (
@@ -336,7 +344,7 @@ SUBCOMMANDS = (
         "that has steps left is shown. Where no plan attains all goals, those that none attains, what was refuted and "
         "the steps that settle what is open are shown as far as they are known, and the exit code is 1.",
     ),
-    Subcommand("repl", "repl", "step through a run and ask what Utak believes", [STORY, *SETTINGS]),
+    Subcommand("repl", "repl", "step through a run and ask what Utak believes", [STORY, TOLD_CERTIFICATE, *SETTINGS]),
     Subcommand("explain", "explain", "tell why: a fact, a command, a verdict, a cell of an impression", EXPLAIN),
     Subcommand(
         "replay",

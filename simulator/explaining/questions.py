@@ -28,6 +28,7 @@ from utak.kb.language.diagnostics import BadInputError, Problem
 from utak.kb.language.reader import facts_from_text
 from utak.kb.language.vocabulary import BELIEF_PREDICATES
 from utak.simulator.episode.episode import Episode, EpisodeLine
+from utak.simulator.explaining.certified import certificate_reason
 from utak.simulator.explaining.missing_rules import missing_rules
 
 QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
@@ -56,8 +57,10 @@ class Questions:
         lines: Sequence[EpisodeLine],
         result: EpisodeLine | None = None,
         rule_files: Sequence[str] = (),
+        certificate: str = "",
     ) -> None:
-        self._header, self._result = header, result
+        self._header, self._lines, self._result = header, lines, result
+        self._certificate = certificate  # the text of one, which is told with the verdict; "" for none
         self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
         self._rule_files = tuple(rule_files)
         self._absences = AbsenceExplainer(self.beliefs, rule_files)
@@ -181,6 +184,9 @@ class Questions:
             raise _problem(wanted, NO_VERDICT)
         if not _fits(wanted, found.claim):
             raise _problem(wanted, f"this is not the verdict: it is {found.claim}")
+        if self._certificate:
+            certified = certificate_reason(self._header, self.beliefs.record.steps, self._lines, self._certificate)
+            return replace(found, rests_on=(certified, *found.rests_on))
         return found
 
     def _instances(self, wanted: str, step: int) -> list[str]:
@@ -198,9 +204,9 @@ class Questions:
         return step
 
 
-def questions_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> Questions:
+def questions_of_episode(episode: Episode, rule_files: Sequence[str] = (), certificate: str = "") -> Questions:
     """Return the questions about an episode that was read; rule_files : the files with users' rules of its run."""
-    return Questions(episode.header, episode.steps, episode.result, rule_files)
+    return Questions(episode.header, episode.steps, episode.result, rule_files, certificate)
 
 
 @contextmanager

@@ -15,9 +15,11 @@ MAX_SENTENCE_CHARACTERS = 240  # characters of the text of a claim; a convention
 TreeEntry = dict[str, Any]  # {"text": str, "children": [...]}, or without children
 
 
-def trees_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> dict[int, list[TreeEntry]]:
+def trees_of_episode(
+    episode: Episode, rule_files: Sequence[str] = (), certificate: str = ""
+) -> dict[int, list[TreeEntry]]:
     """Return trees of reasons by step: why its command was given, and at the last step why the verdict is so."""
-    questions, last = questions_of_episode(episode, rule_files), len(episode.steps) - 1
+    questions, last = questions_of_episode(episode, rule_files, certificate), len(episode.steps) - 1
     stride = max(1, -(-last // MAX_EXPLAINED_STEPS))
     trees: dict[int, list[TreeEntry]] = {}
     try:

@@ -36,9 +36,10 @@ class Dialogue:
         engine: QueryEngine,
         printer: Printer,
         commands: Mapping[str, PromptCommand],
+        certificate: str = "",
     ) -> None:
         self.story, self.engine, self.printer = story, engine, printer
-        self.commands = commands
+        self.commands, self.certificate = commands, certificate
         self.rest: Iterator[bool] | None = None  # prints the pages of the last answer that were not printed yet
         self.told_lacking = False  # whether it was said that rules of the run are not given
 

@@ -43,7 +43,8 @@ def _questions(dialogue: Dialogue) -> "Questions":
     from utak.simulator.explaining.questions import Questions  # takes clingo
 
     story = dialogue.story
-    questions = Questions(story.header, story.lines[: story.at + 1], story.result, story.rule_files)
+    lines = story.lines[: story.at + 1]
+    questions = Questions(story.header, lines, story.result, story.rule_files, dialogue.certificate)
     if not dialogue.told_lacking:
         dialogue.told_lacking = True
         if lacking := questions.lacking:

@@ -10,10 +10,11 @@ from utak.simulator.repl.statements import StatementBuffer
 from utak.simulator.run.story import Story
 
 
-def converse(story: Story, engine: QueryEngine) -> None:
+def converse(story: Story, engine: QueryEngine, certificate: str = "") -> None:
     """Talk with the user of the standard streams about a story, until the input ends or they leave."""
+    # With the text of a certificate, which is told with the verdict.
     printer, history = open_printer(), History()
-    dialogue = Dialogue(story, engine, printer, PROMPT_COMMANDS)
+    dialogue = Dialogue(story, engine, printer, PROMPT_COMMANDS, certificate)
     reader = open_reader(lambda text: complete(dialogue, text), history, lambda text: is_whole(dialogue, text))
     kind = "an episode" if story.is_recorded else "a run"
     printer.note(f"{kind} at step {story.at}; help lists what there is, ?- asks, Tab completes, quit leaves")

@@ -36,16 +36,21 @@ def _is_shallow(value: Any) -> bool:
 
 
 def write_page(
-    path: Path | str, episode: Episode, force: bool = False, rule_files: Sequence[str] = (), name: str = ""
+    path: Path | str,
+    episode: Episode,
+    force: bool = False,
+    rule_files: Sequence[str] = (),
+    name: str = "",
+    certificate: str = "",
 ) -> str:
-    """Write the page of an episode, with trees of reasons."""
+    """Write the page of an episode, with trees of reasons, and with the text of a certificate, which it checks."""
     from utak.simulator.explaining.missing_rules import missing_rules
     from utak.simulator.explaining.trees import (
         trees_of_episode,  # takes clingo, which the other kinds of replay do not need
     )
 
     lacking = missing_rules(episode.header, rule_files)
-    page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name)
+    page = replay_page(episode, trees_of_episode(episode, rule_files, certificate), lacking, name, certificate)
     write_whole(path, page.encode("utf-8"), is_page, PAGE_KIND, force)
     return lacking
 

@@ -7,7 +7,7 @@ style but these, and no request at all; so no text of an episode can do anything
 The episode is an index and the lines of its steps, each one line of JSON. The index has `header` and `result`, those of
 the episode; `utak` and `place`, where the robot was and where it believed to be, by step; `anew`, the steps that state
 `seen_from`; `events`, the steps of each kind of event; `bounds`, the least and greatest coordinates of floor and
-things; `trees`, explanations by step.
+things; `trees`, explanations by step; `certificate`, the text of a certificate, which the page checks; "" for none.
 """
 
 import base64
@@ -31,13 +31,18 @@ from utak.simulator.terminal.streams import one_line
 
 LOADER = ("loader.js",)  # the script that stands in a page as it is
 # The scripts that stand in it deflated, in the order in which they need one another.
-PLAYER = ("episode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js", "player.js", "start.js")
+DRAWING = ("episode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js")
+PLAYER = (*DRAWING, "certificate.js", "certificate_drawn.js", "player.js", "start.js")
 MAX_TITLE_CHARACTERS = 300  # of a title made from an episode's goals; a convention
 MAX_SAFE_INTEGER = 2**53  # the greatest integer that a browser's numbers hold exactly
 
 
 def replay_page(
-    episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None, lacking: str = "", name: str = ""
+    episode: Episode,
+    trees: Mapping[int, Sequence[Any]] | None = None,
+    lacking: str = "",
+    name: str = "",
+    certificate: str = "",
 ) -> str:
     """Return an episode as a page of HTML that plays it."""
     if not episode.steps:
@@ -56,7 +61,7 @@ def replay_page(
         loader=loader,
         script_hashes=f"'{_hash(loader)}' '{_hash(player)}'",
         player=_deflated([{"style": style, "body": body, "script": player}]),
-        episode=_deflated([_index(episode, trees or {}), *map(slim, episode.steps)]),
+        episode=_deflated([_index(episode, trees or {}) | {"certificate": certificate}, *map(slim, episode.steps)]),
     )
 
 

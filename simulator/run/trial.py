@@ -1,6 +1,6 @@
 """A scenario as a test: a run, and the comparison of its end with expect.lp and with the questions of trial.lp."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -44,15 +44,16 @@ def run_trial(
     given: Mapping[str, Any] | None = None,
     kb_files: Sequence[str] = (),
     make: RobotMaker = make_robot,
+    listeners: Sequence[Callable[[EpisodeLine], None]] = (),
 ) -> ScenarioTrial:
-    """Run a scenario and judge the end by its expect.lp and trial.lp."""
+    """Run a scenario and judge the end by its expect.lp and trial.lp; listeners are told each line of the episode."""
     # A scenario passes when all that is tested is met, and its end is the one expected: with `fails`, Utak does not
     # believe that the task is done, and gives a reason; with `verdict(V)`, the verdict is V; otherwise Utak believes
     # that the task is done.
     scenario, plan = _read(Path(folder))
     rules = kb_files_named([*kb_files, *plan.rules])
     settings = replace(Settings(kb_files=rules), **{**plan.options, **(given or {})})
-    session = Session(scenario, settings, make, EpisodeLog(None))
+    session = Session(scenario, settings, make, EpisodeLog(None, listeners=listeners))
     last_steps: list[EpisodeLine] = []
 
     def keep(at: Session) -> None:

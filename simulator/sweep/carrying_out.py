@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from contextlib import closing
 
+from utak.simulator.certificates.keeping import keep
 from utak.simulator.episode.schema import complaints
 from utak.simulator.sweep.contents import EXPECTATIONS_FILE
 from utak.simulator.sweep.executors.code_identity import code_identity
@@ -33,6 +34,9 @@ def carry_out_sweep(plan: SweepPlan, results: Results, executor: Executor, watch
     with closing(executor([plan.task(run) for _, run in missing])) as ended:
         for index, outcome in ended:
             name, run = missing[index]
+            texts = (outcome.value or {}).pop("kept", None)
+            if texts is not None and plan.certificates is not None:
+                keep(plan.certificates, f"{run.scenario}-{run.noise:g}-{run.seed}", texts)
             results.append({"run": name, **row_of(plan, run, outcome, judged[run.scenario])})
             watch(run, outcome.seconds)
 

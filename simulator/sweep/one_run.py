@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from utak.kb.language.diagnostics import BadInputError, CannotOpenError
-from utak.simulator.episode.episode import EpisodeLog
+from utak.simulator.certificates.keeping import kept_texts
+from utak.simulator.episode.episode import EpisodeLine, EpisodeLog
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.session import RobotMaker, Session
 from utak.simulator.run.trial import faults_of
@@ -30,7 +31,8 @@ def run_one(argument: dict[str, Any], make: RobotMaker = make_robot) -> dict[str
         try:
             scenario = read_scenario(folder)
             settings = Settings(**argument["options"], kb_files=tuple(str(folder / name) for name, _ in rules))
-            result = Session(scenario, settings, make, EpisodeLog(None)).run()
+            lines: list[EpisodeLine] = []
+            result = Session(scenario, settings, make, EpisodeLog(None, listeners=[lines.append])).run()
         except BadInputError as bad:
             problems = [problem._replace(file=_short(problem.file, folder)) for problem in bad.problems]
             raise BadInputError(problems) from bad
@@ -39,7 +41,8 @@ def run_one(argument: dict[str, Any], make: RobotMaker = make_robot) -> dict[str
     expected, passed = scenario.expectations, None
     if expected is not None:
         passed = not list(faults_of(result, result.outcomes, expects_verdict(expected)))
-    return {"result": {**result.line["result"], "unmet": list(result.unmet)}, "passed": passed}
+    texts = {"kept": kept_texts(lines, result.verdict)} if argument["certificates"] else {}
+    return {"result": {**result.line["result"], "unmet": list(result.unmet)}, "passed": passed, **texts}
 
 
 def _short(path: str, folder: Path) -> str:

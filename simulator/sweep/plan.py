@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from utak.simulator.scenario.settings import MAX_SEED, Settings
 from utak.simulator.sweep.contents import ScenarioContents
@@ -38,6 +38,7 @@ class SweepPlan:
     settings: Settings = field(default_factory=Settings)
     rules: tuple[tuple[str, str], ...] = ()  # (name, text) of each file of users' rules
     seconds: float | None = None  # the limit of wall-clock time of a run; None for no limit
+    certificates: str | None = None  # the folder in which episodes and certificates are kept; None to keep none
     shard: tuple[int, int] = (1, 1)  # (i, n): only every n-th run, from the i-th on
 
     @property
@@ -60,10 +61,11 @@ class SweepPlan:
 
     def task(self, run: SweepRun) -> WorkerTask:
         """Return the task of a run, with the texts of all files that it needs."""
-        argument = {
+        argument: dict[str, Any] = {
             "files": [list(file) for file in self._contents[run.scenario].files],
             "rules": [list(file) for file in self.rules],
             "options": self.settings.options | {"noise": run.noise, "seed": run.seed},
+            "certificates": self.certificates is not None,
         }
         return WorkerTask(RUN_FUNCTION, argument, self.seconds)
 

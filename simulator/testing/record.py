@@ -6,6 +6,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 
+from utak.simulator.certificates.keeping import keep, kept_texts
+from utak.simulator.episode.episode import EpisodeLine
 from utak.simulator.run.trial import ScenarioTrial, promised_points, run_trial
 from utak.simulator.scenario.untrusted import refuse_outside_links
 from utak.simulator.terminal import exits
@@ -32,6 +34,8 @@ class Wish(NamedTuple):
     kb_files: tuple[str, ...] = ()  # files of rules, in addition to those of trial.lp.
     untrusted: bool = False  # whether links that lead out of the scenario are refused
     timed: bool = False  # whether the record says how long it took
+    kept: tuple[str, str] | None = None  # the folder and the name under which the episode and its certificate are kept
+    force: bool = False  # whether files of other kinds are overwritten there
 
 
 def try_scenario(wish: Wish) -> TrialRecord:
@@ -48,7 +52,11 @@ def _run(wish: Wish, trials: list[ScenarioTrial]) -> int:
     """Run the scenario, append its trial to `trials` and return the exit code."""
     if wish.untrusted:
         refuse_outside_links(wish.folder, wish.root)
-    trials.append(run_trial(Path(wish.folder), wish.given, wish.kb_files))
+    lines: list[EpisodeLine] = []
+    listeners = [] if wish.kept is None else [lines.append]
+    trials.append(run_trial(Path(wish.folder), wish.given, wish.kb_files, listeners=listeners))
+    if wish.kept is not None:
+        keep(*wish.kept, kept_texts(lines, trials[0].result.verdict), wish.force)
     return exits.SUCCESS if trials[0].passed else exits.NOT_REACHED
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from utak.kb.evidence.reason import Depth, Reason
-from utak.simulator.cli.commands.given import given_story, go_to
+from utak.simulator.cli.commands.given import given_certificate, given_story, go_to
 from utak.simulator.episode.episode import Episode, read_begun_episode
 from utak.simulator.explaining.fixing.changes import Led, MoreCommands, WorldChange, variant_of
 from utak.simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget, Outcome
@@ -36,7 +36,7 @@ def execute(options: argparse.Namespace) -> int:
         raise UsageError(wrong)
     if options.fix:
         return _fix(options)
-    questions = questions_of_episode(_episode(options), rule_paths(options.kb))
+    questions = questions_of_episode(_episode(options), rule_paths(options.kb), given_certificate(options))
     if questions.lacking:
         print(f"utak: {questions.lacking}; give rules with --kb FILE", file=sys.stderr)
     reason = _answer(questions, options)

@@ -5,6 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 from utak.kb.language.diagnostics import BadInputError
+from utak.kb.language.source_text import read_bytes
+from utak.simulator.certificates.search import is_certificate
+from utak.simulator.episode.episode import MAX_EPISODE_BYTES
 from utak.simulator.run.story import Story, open_story
 from utak.simulator.scenario.settings import SETTING_NAMES, Settings, kb_files_named
 from utak.simulator.scenario.untrusted import refuse_links
@@ -26,6 +29,16 @@ def given_story(options: argparse.Namespace) -> Story:
     """Return the story that the command line names, at step 0."""
     refuse_links(options, options.story)
     return open_story(options.story, settings_of(options))
+
+
+def given_certificate(options: argparse.Namespace) -> str:
+    """Return the text of the certificate that --certificate names; "" without one."""
+    if options.certificate is None:
+        return ""
+    whole = read_bytes(options.certificate, MAX_EPISODE_BYTES)
+    if not is_certificate(whole):
+        raise BadInputError.at(options.certificate, "this is no certificate")
+    return whole.decode("utf-8", "replace")  # what is no UTF-8 is refused where it is checked
 
 
 def go_to(story: Story, name: str, step: int | None) -> None:

@@ -4,6 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from utak.simulator.cli.commands.given import given_certificate
 from utak.simulator.explaining.missing_rules import rule_paths
 from utak.simulator.replay.output import read_replayable, write_gif, write_page
 from utak.simulator.replay.transcript import transcript
@@ -13,12 +14,13 @@ from utak.simulator.terminal.outcome import UsageError
 
 def execute(options: argparse.Namespace) -> int:
     """Read the episode and show it."""
-    if options.kb and options.html is None:
-        raise UsageError("--kb needs --html: only pages give reasons")
+    if options.html is None and (options.kb or options.certificate):
+        raise UsageError("--kb and --certificate need --html: only pages give reasons")
     episode = read_replayable(options.episode)
     if options.html is not None:
         name = Path(options.episode).stem
-        if lacking := write_page(options.html, episode, options.force, rule_paths(options.kb), name):
+        rules, certificate = rule_paths(options.kb), given_certificate(options)
+        if lacking := write_page(options.html, episode, options.force, rules, name, certificate):
             print(f"utak: {lacking}; give rules with --kb FILE", file=sys.stderr)
     elif options.gif is not None:
         write_gif(options.gif, episode, options.force)

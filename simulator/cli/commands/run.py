@@ -57,23 +57,23 @@ def execute(options: argparse.Namespace) -> int:
     lines: list[EpisodeLine] = []
     with StepProgress(settings_of(options).max_steps) as progress:
         result = _run(options, scenario, _progress_printer(options.watch, progress), list(_listeners(options, lines)))
+    certificate = "" if options.certificate is None else _certificate_written(options, result, lines)
     if options.html is not None:
-        rule_files = rule_paths((*options.kb, *options.from_kb))
-        write_page(options.html, _recorded(lines), options.force, rule_files, Path(options.scenario).resolve().name)
-    if options.certificate is not None:
-        _write_certificate(options, result, lines)
+        rule_files, name = rule_paths((*options.kb, *options.from_kb)), Path(options.scenario).resolve().name
+        write_page(options.html, _recorded(lines), options.force, rule_files, name, certificate)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 
 
-def _write_certificate(options: argparse.Namespace, result: Result, lines: Sequence[EpisodeLine]) -> None:
-    """Write the certificate of the verdict; where there is none, say why."""
+def _certificate_written(options: argparse.Namespace, result: Result, lines: Sequence[EpisodeLine]) -> str:
+    """Write the certificate of the verdict and return its text; where there is none, say why and return ""."""
     try:
         text = certificate_of(map(encode, lines), result.verdict)
     except NoCertificateError as why:
         print(one_line(f"no certificate: {why}"), file=sys.stderr)
-        return
+        return ""
     write_whole(options.certificate, text.encode("ascii"), is_certificate, "certificate", options.force)
+    return text
 
 
 def _wrong_usage(options: argparse.Namespace) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from utak.kb.language.source_text import read_source
 from utak.planner.stages import stages
+from utak.simulator.certificates.keeping import make_folder
 from utak.simulator.cli.commands.given import given_settings
 from utak.simulator.episode.output_files import check_path, is_svg, write_whole
 from utak.simulator.run.interrupts import end_at_request
@@ -41,6 +42,8 @@ def execute(options: argparse.Namespace) -> int:
         raise UsageError(f"{plan.size} runs are more than {MAX_RUNS}")
     if options.svg:  # before anything is run
         check_path(options.svg, is_svg, "SVG picture", options.force)
+    if options.certificate is not None:
+        make_folder(options.certificate)
     results = Results(options.output, ROW_KEY, options.force, problem_of)
     code = exits.SUCCESS
     with end_at_request(), closing(results):
@@ -79,7 +82,14 @@ def _plan(options: argparse.Namespace) -> tuple[SweepPlan, bool]:
     settings = Settings(**{key: value for key, value in given_settings(options).items() if key != "noise"})
     rules = [(Path(path).name, read_source(path).text) for path in kb_files_named(options.kb)]
     plan = SweepPlan(
-        tuple(contents), options.seeds, options.noise, settings, tuple(rules), options.seconds, options.shard
+        tuple(contents),
+        options.seeds,
+        options.noise,
+        settings,
+        tuple(rules),
+        options.seconds,
+        options.certificate,
+        options.shard,
     )
     return plan, carrying
 

@@ -4,9 +4,11 @@ import argparse
 import sys
 from itertools import chain
 
+from utak.simulator.certificates.keeping import make_folder
 from utak.simulator.cli.commands.given import given_settings
 from utak.simulator.episode.output_files import check_path, is_junit, write_whole
 from utak.simulator.scenario.settings import kb_files_named
+from utak.simulator.sweep.contents import names_of
 from utak.simulator.terminal import exits
 from utak.simulator.terminal.printing import as_json
 from utak.simulator.testing.grades import as_csv, is_csv
@@ -25,7 +27,14 @@ def execute(options: argparse.Namespace) -> int:
         check_path(path, kind, name, options.force)
     found, absent = find_scenarios(options.folders, options.name)
     given, untrusted, timed = given_settings(options), options.untrusted, options.times
-    wishes = [Wish(str(folder), root, given, kb_files, untrusted, timed) for folder, root in found.items()]
+    kept: list[tuple[str, str] | None] = [None] * len(found)
+    if options.certificate is not None:
+        make_folder(options.certificate)
+        kept = [(options.certificate, name) for name in names_of([folder.resolve() for folder in found])]
+    wishes = [
+        Wish(str(folder), root, given, kb_files, untrusted, timed, where, options.force)
+        for (folder, root), where in zip(found.items(), kept, strict=True)
+    ]
     records = []
     for record in chain(absent, try_all(wishes, options.jobs)):
         records.append(record)

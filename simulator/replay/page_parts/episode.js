@@ -3,7 +3,7 @@
 const MAX_LINES_KEPT = 50; // lines that are kept once they were read
 
 // What the index has; line(step), the line of a step; solved(step), its decisions; trees(step), the explanations that were
-// given with it; seen(step), where all impressions up to it were received, as believed at that step.
+// given with it; file(), the episode as its file has it; seen(step), where all impressions up to it were received, as believed at that step.
 function openEpisode(text) {
   const [first, ...texts] = text.split("\n"), index = JSON.parse(first), lines = new Map();
 
@@ -18,5 +18,6 @@ function openEpisode(text) {
     const anew = index.anew.filter((one) => one <= step).pop();
     return anew === undefined ? index.place.slice(0, step + 1) : [...line(anew).belief.seen_from, ...index.place.slice(anew + 1, step + 1)];
   }
-  return { ...index, line, seen, solved: (step) => line(step).belief.solved, trees: (step) => index.trees[step] || [] };
+  const file = () => [JSON.stringify(index.header), ...texts, ""].join("\n");
+  return { ...index, line, seen, file, solved: (step) => line(step).belief.solved, trees: (step) => index.trees[step] || [] };
 }

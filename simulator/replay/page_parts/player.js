@@ -1,12 +1,13 @@
 // The player: which step is shown, and how one gets to another one.
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 30]; // steps a second
-const LAYERS = { unseen: "unseen", track: "tracks", pathgraph: "pathgraph", routes: "what was weighed", impression: "retina on the table" };
+const LAYERS = { unseen: "unseen", track: "tracks", pathgraph: "pathgraph", routes: "what was weighed", impression: "retina on the table", certificate: "what the certificate settles" };
+const CHECKED_AFTER = 50; // milliseconds: the page is shown before its certificate is checked
 const VIEWS = { side: "side by side", overlay: "overlay", truth: "table alone", belief: "belief alone" };
 
 function startPlayer(episode) {
   const last = episode.utak.length - 1, places = placing(episode.header, episode.utak[0]), area = areaOf(episode, places);
-  const events = eventsOf(episode), state = { step: -1, timer: null, view: "side", layers: new Set(["unseen", "track", "routes"]) };
+  const events = eventsOf(episode), state = { step: -1, timer: null, view: "side", layers: new Set(["unseen", "track", "routes", "certificate"]), checked: null };
   const options = { marks: false, digits: false, inner: false };
   const output = byId("field-text"), fieldNumber = byId("field");
   const retina = Object.fromEntries(["observed", "predicted", "difference"].map((name) => [name, retinaPicture(name, (field) => {
@@ -91,6 +92,7 @@ function startPlayer(episode) {
     }
     if (which === "truth") picture.append(drawTruth(at));
     if (which === "truth" && at.layers.has("impression")) picture.append(drawImpression(at));
+    if (which === "truth" && state.checked && at.layers.has("certificate")) picture.append(drawCertificate(at, state.checked));
     if (which === "belief" || both) picture.append(drawBelief(at));
     if (which === "truth") picture.append(drawRobot(at));
     return picture;
@@ -208,7 +210,8 @@ function startPlayer(episode) {
   for (const speed of SPEEDS) byId("speed").append(html("option", { value: speed }, `${speed} a second`));
   byId("speed").selectedIndex = 1;
   byId("views").append(...choices("radio", "view", VIEWS, (name) => name === state.view, setView));
-  byId("layers").append(...choices("checkbox", "layer", LAYERS, (name) => state.layers.has(name), (name) => {
+  const { certificate, ...layers } = LAYERS;
+  byId("layers").append(...choices("checkbox", "layer", episode.certificate ? LAYERS : layers, (name) => state.layers.has(name), (name) => {
     if (!state.layers.delete(name)) state.layers.add(name);
     draw();
   }));
@@ -216,6 +219,16 @@ function startPlayer(episode) {
   drawEvents(episode, last);
   const wanted = stepOfAddress();
   show(wanted === null ? 0 : wanted);
+  if (episode.certificate) {
+    const tell = () => panel("certificate-panel", () => certificatePanel(state.checked, episode.header));
+    byId("certificate").hidden = false;
+    tell();
+    setTimeout(() => {
+      state.checked = checkCertificate(episode.file(), episode.certificate);
+      tell();
+      draw();
+    }, CHECKED_AFTER);
+  }
   return { state, show, go, jump };
 }
 

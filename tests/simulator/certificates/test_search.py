@@ -35,7 +35,7 @@ def test_where_nothing_shows_the_verdict_one_line_says_so(tmp_path: Path, capsys
     certificate = tmp_path / "certificate.json"
     assert main(["run", str(EXAMPLES / "go_next_room"), "--certificate", str(certificate)]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "certificate" in line]
-    assert told == ["no certificate: certificates show nothing of in(utak,room(next))"]
+    assert told == ["no certificate: nothing is shown of in(utak,room(next))"]
     assert not certificate.exists()
 
 
@@ -44,6 +44,22 @@ def test_a_file_of_another_kind_is_not_overwritten(tmp_path: Path) -> None:
     other.write_text("mine")
     assert main(["run", str(EXAMPLES / "go_to_square"), "--certificate", str(other)]) == 66
     assert other.read_text() == "mine"
+
+
+def test_tests_and_sweeps_keep_certificates_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    kept = tmp_path / "kept"
+    scenarios = [str(EXAMPLES / name) for name in ("go_to_square", "go_next_room")]
+    assert main(["test", *scenarios, "--certificate", str(kept)]) == 0
+    assert main(["sweep", scenarios[0], "--seeds", "3", "--certificate", str(kept)]) == 0
+    names = {"go_to_square.jsonl", "go_to_square.json", "go_next_room.jsonl", "go_next_room.txt"}
+    assert {path.name for path in kept.iterdir()} == names | {"go_to_square-0-3.jsonl", "go_to_square-0-3.json"}
+    assert (kept / "go_next_room.txt").read_text().startswith("no certificate: nothing is shown of in(utak")
+    for name in ("go_to_square", "go_to_square-0-3"):
+        assert main(["verify", str(kept / f"{name}.jsonl"), str(kept / f"{name}.json")]) == 0
+    (kept / "go_next_room.txt").write_text("mine")
+    assert main(["test", scenarios[1], "--certificate", str(kept)]) == 66
+    assert (kept / "go_next_room.txt").read_text() == "mine"
+    capsys.readouterr()
 
 
 def test_a_certificate_is_a_text_in_python(tmp_path: Path) -> None:

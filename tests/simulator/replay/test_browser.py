@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from replay_episodes import hostile
+from replay_episodes import HOSTILE, hostile, recorded
 
 from benchmarks.harness.browser import CHROMIUM, Browser
 from utak.simulator.episode.episode import Episode
@@ -373,3 +373,27 @@ def test_a_damaged_page_says_so(browser: Browser, page: Path, tmp_path: Path) ->
         browser.open(path)
         told = browser.run("document.getElementById('status').textContent")
         assert told.startswith("This page cannot be shown, or is damaged: ")
+
+
+def test_a_certificate_is_checked_and_drawn(browser: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "certificate.json"
+    _, episode = recorded(tmp_path, "go_round_square", "--certificate", str(file))
+    stated = file.read_text()
+    said = "document.getElementById('certificate-panel').innerText"
+    page = tmp_path / "certified.html"
+    altered = stated.replace('["holds"]', '["replay"]'), stated.replace('"steps":[6,6]', '"steps":[6,5]'), HOSTILE
+    for text, verdict in ((stated, "✓ accepted"), *((one, "✗ refused") for one in altered)):
+        page.write_text(replay_page(episode, certificate=text))
+        browser.open(page, f"#step={len(episode.steps) - 1}")
+        browser.wait(f"!{said}.startsWith('It is being checked')")
+        assert browser.run(said).startswith(verdict)
+        drawn = browser.run(
+            "[...document.querySelectorAll('.certificate path')].map((one) => one.getAttribute('class'))"
+        )
+        names = ["free", "occupied", "verge", "thing", "place"] if text == stated else []
+        assert drawn == [f"settled-{name}" for name in names]
+        assert browser.complaints() == []
+    page.write_text(replay_page(episode))
+    browser.open(page)
+    assert browser.run("document.getElementById('certificate').hidden")
+    assert browser.run("document.getElementById('layer-certificate')") is None

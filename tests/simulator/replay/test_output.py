@@ -50,11 +50,14 @@ def test_a_page_is_written_and_no_other_file_is_overwritten(
 
 @pytest.mark.long
 def test_run_writes_the_page_that_its_log_gives(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    log, page, again = (tmp_path / name for name in ("go_northeast.jsonl", "a.html", "b.html"))
-    scenario = str(ROOT / "examples" / "go_northeast")
-    assert main(["run", scenario, "--log", str(log), "--html", str(page)]) == 0
-    assert main(["replay", str(log), "--html", str(again)]) == 0
-    assert page.read_text() == again.read_text()
+    log, page, again = (tmp_path / name for name in ("go_to_square.jsonl", "a.html", "b.html"))
+    scenario, certified = str(ROOT / "examples" / "go_to_square"), ["--certificate", str(tmp_path / "c.json")]
+    for given in ([], certified):
+        assert main(["run", scenario, "--log", str(log), "--html", str(page), *given]) == 0
+        assert main(["replay", str(log), "--html", str(again), *given]) == 0
+        assert page.read_text() == again.read_text()
+    assert main(["replay", str(log), *certified]) == 2  # only pages give reasons
+    assert main(["replay", str(log), "--html", str(again), "--certificate", str(log)]) == 65
     (tmp_path / "notes").write_text("mine")
     capsys.readouterr()
     assert main(["run", scenario, "--html", str(tmp_path / "notes")]) == 66

@@ -4,7 +4,8 @@ import argparse
 
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.source_text import read_bytes
-from utak.simulator.certificates.checker import RefusedError, parsed, verify
+from utak.simulator.certificates.checker import verify
+from utak.simulator.certificates.courses import RefusedError, parsed
 from utak.simulator.episode.episode import MAX_EPISODE_BYTES
 from utak.simulator.terminal import exits
 from utak.simulator.terminal.streams import one_line

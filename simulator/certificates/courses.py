@@ -1,0 +1,297 @@
+"""Courses that a run may have taken, by its impressions and commands alone, as docs/certificates.md says.
+
+Of a certificate this is what its lines rest on, and `checker` is the rest. Both import nothing else of ours.
+"""
+
+import json
+from collections import Counter
+from fractions import Fraction
+from functools import cache
+from itertools import accumulate, pairwise, product
+from math import lcm
+from typing import Any, NamedTuple, NoReturn
+
+FIELD_ZONES = ((4, 0, 1), (8, 4, 2), (16, 8, 4))  # of the retina: reach, reach of the one within, side of fields
+FIELD_OFFSETS = [  # of the retina, in order: the offset (east, north) of the south-west square, and the side
+    (east, north, side)
+    for reach, inner, side in FIELD_ZONES
+    for north in range(reach - side, -reach - 1, -side)
+    for east in range(-reach, reach, side)
+    if not (-inner <= east < inner and -inner <= north < inner)
+]
+SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}  # the robot always fills its square
+LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
+for k, n in [(1, n) for n in range(2)] + [(2, n) for n in range(5)] + [(4, n) for n in range(17)]:
+    LEVEL_RANGES.setdefault((k, (14 * n + k * k) // (2 * k * k)), [n, n])[1] = n
+TOUCH_NAMES = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+TOUCH_OFFSETS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # (east, north), in this order
+VERGE_LETTER = "b"  # the colour of what bounds the floor
+PI_DECIMALS = Fraction("3.14159265358979323846264338327950288")
+DIRECTION_SCALE = 10**18  # cosines and sines are whole numbers of so small parts
+TIE_ERROR = DIRECTION_SCALE // 10**9  # so near to the middle between two squares either may be sampled (axiom 2)
+PLACE_PARTS = 10**6  # of a square: one of them is more than a command may lead beside its way (axiom 4)
+MAX_SQUARES = 20000  # of one command, or in which a thing lies; a bound on time
+MAX_EXPONENT_DIGITS = 4  # with the sign; a bound on time
+
+Spot = tuple[int, int]
+Spots = frozenset[Spot]
+Span = tuple[int, int]  # least and greatest; or x and y of a vector
+Zone = tuple[Span, Span]  # a range of x and a range of y, map frame; `Evidence.unit` is a square
+Key = tuple[int, int, int]  # a square, and the step since which nothing was carried through it
+
+
+class RefusedError(Exception):
+    """The claim of a certificate does not follow by what the certificate says; the message tells why."""
+
+
+def refuse(why: str) -> NoReturn:
+    """Raise RefusedError."""
+    raise RefusedError(why)
+
+
+@cache
+def direction(angle: int) -> Span:
+    """Return DIRECTION_SCALE times cosine and sine of whole degrees, from 0 to 90, rounded, by their series."""
+    turn = PI_DECIMALS * angle / 180
+    terms = [*accumulate(range(1, 30), lambda term, n: term * turn / n, initial=Fraction(DIRECTION_SCALE))]
+    parts = [sum((-1) ** (n // 2) * term for n, term in enumerate(terms) if n % 2 == odd) for odd in (0, 1)]
+    return round(parts[0]), round(parts[1])
+
+
+def turned(east: int, north: int, angle: int) -> Span:
+    """Return DIRECTION_SCALE times a vector of the robot frame in the map frame."""
+    cosine, sine = direction(angle)
+    return east * cosine - north * sine, east * sine + north * cosine
+
+
+def under(east: int, north: int, angle: int) -> Spot | None:
+    """Return the square under an offset, itself as an offset; None where that falls between two squares."""
+    (i, a), (j, b) = (divmod(part + DIRECTION_SCALE // 2, DIRECTION_SCALE) for part in turned(east, north, angle))
+    return (i, j) if min(a, b) > TIE_ERROR and max(a, b) < DIRECTION_SCALE - TIE_ERROR else None
+
+
+@cache
+def sampled(angle: int) -> list[tuple[dict[Spot, int], int]]:
+    """Return of each field how often it samples each square, an offset, and how often it falls between two."""
+    fields = []
+    for east, north, side in FIELD_OFFSETS:
+        squares = [under(e, n, angle) for e in range(east, east + side) for n in range(north, north + side)]
+        fields.append((dict(Counter(square for square in squares if square)), squares.count(None)))
+    return fields
+
+
+def parsed(text: str) -> Any:
+    """Return the value of a JSON text, with exact numbers; raises ValueError."""
+
+    def exact(number: str) -> Fraction:
+        return Fraction(number if len(number.lower().partition("e")[2]) <= MAX_EXPONENT_DIGITS else "too long")
+
+    return json.loads(text, parse_float=exact, parse_constant=Fraction)
+
+
+class Evidence:
+    """The impressions and commands of an episode, and its task: nothing else of it is read."""
+
+    def __init__(self, text: str) -> None:
+        head, *rows = (parsed(row) for row in text.split("\n")[:-1])
+        if (head["utak"], head["version"]) != ("episode", 1):
+            raise ValueError("it is no episode of version 1")
+        self.goals, self.kinds = head["task"]["goals"], head["task"]["parameters"]
+        self.claims = [str(fact) for fact, _ in head["task"]["claims"]]
+        steps = [row for row in rows if "result" not in row]
+        self.actions, self.touches = [row["action"] for row in steps], [row["touch"] for row in steps]
+        fields = product(range(len(steps)), SAMPLED_FIELDS)
+        self.ranges = {(k, f): LEVEL_RANGES[FIELD_OFFSETS[f][2], steps[k]["retina"][f]] for k, f in fields}
+        self.last = len(steps) - 1
+        if [row["step"] for row in steps] != list(range(len(steps))) or {*map(len, self.touches)} != {len(TOUCH_NAMES)}:
+            raise ValueError("its steps are not whole")
+        self.vectors = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
+        self.parts = lcm(*(number.denominator for vector in self.vectors for number in vector))
+        self.unit = 2 * PLACE_PARTS * DIRECTION_SCALE * self.parts  # a square: all lengths are whole numbers
+        self.error = self.unit // PLACE_PARTS
+        self.hindrance = [key for key in ("forked", "changes") if key in head]  # axiom 3
+        self.hindrance += [key for key, usual in (("noise", 0), ("kb", [])) if head["options"][key] != usual]
+        self.hindrance += ["disturbed"] * any("disturbed" in row for row in steps)
+
+    def motion(self, step: int, angle: int) -> Span:
+        """Return the vector of a command, map frame."""
+        east, north = self.vectors[step]
+        x, y = turned(int(east * self.parts), int(north * self.parts), angle)
+        return x * 2 * PLACE_PARTS, y * 2 * PLACE_PARTS
+
+
+def common(one: Span, other: Span) -> Span:
+    """Return the common part of two intervals; its ends are in reverse order where there is none."""
+    return max(one[0], other[0]), min(one[1], other[1])
+
+
+def led(interval: Span, by: int, error: int) -> Span:
+    """Return the interval through which an interval leads that is moved, longer by an error at both ends."""
+    return interval[0] + min(by, 0) - error, interval[1] + max(by, 0) + error
+
+
+def side_of(number: int, unit: int) -> Span:
+    """Return the range of the coordinates of a row or column of squares."""
+    return number * unit, (number + 1) * unit
+
+
+def touched(box: Zone, unit: int) -> list[Spot]:
+    """Return the squares in whose inside a box has a part."""
+    columns, rows = (range(low // unit, -(-high // unit)) for low, high in box)
+    return list(product(columns, rows)) if len(columns) * len(rows) <= MAX_SQUARES else refuse("it leads too far")
+
+
+def sweep(box: Zone, vector: Span, unit: int) -> Spots:
+    """Return the squares through whose inside a point leads that starts anywhere in a box."""
+    dx, dy = vector
+    lane, square = ([b * dx - a * dy for a, b in product(*sides)] for sides in (box, ((0, unit), (0, unit))))
+    low, high = min(lane) - max(square), max(lane) - min(square)
+    around = touched((led(box[0], dx, 0), led(box[1], dy, 0)), unit)
+    return frozenset((i, j) for i, j in around if low < (j * dx - i * dy) * unit < high)
+
+
+class Course(NamedTuple):
+    """A course that the run may have taken: how the grid lies, and where the robot stood after each command."""
+
+    angle: int  # degrees by which the robot's north is turned against the grid, counter-clockwise positive
+    occupied: dict[Key, bool]  # what is settled: occupied or free
+    changes: dict[Spot, tuple[int, ...]]  # of squares through which something may have been carried: the steps
+    places: tuple[Zone, ...]  # of the robot, at each step
+    squares: tuple[Spot, ...] = ((0, 0),)  # of the robot, at each step
+    swept: tuple[Spots, ...] = (frozenset(),)  # the squares through which each command may have led
+    held: tuple[Spots, ...] = (frozenset(),)  # at each step: squares in which lies all that may be held
+
+    @property
+    def step(self) -> int:
+        """The number of the newest impression."""
+        return len(self.squares) - 1
+
+    def key(self, square: Spot, step: int) -> Key:
+        """Return the key of what a square is at a step."""
+        changes = self.changes.get(square)
+        return *square, next((k for k in reversed(changes) if k <= step), 0) if changes else 0
+
+    def at(self, square: Spot, step: int) -> bool | None:
+        """Return whether a square is occupied at a step; None where that is not settled."""
+        return self.occupied.get(self.key(square, step))
+
+    def touch(self, step: int, touch: int) -> Spot | None:
+        """Return the square of a touch; None where that falls between two squares."""
+        (i, j), offset = self.squares[step], under(*TOUCH_OFFSETS[touch], self.angle)
+        return offset and (i + offset[0], j + offset[1])
+
+    def ends(self, episode: Evidence, only: Spot | None = None) -> dict[Spot, "Course"]:
+        """Return the case after the next command, for each square in which that may have ended, or for one."""
+        unit, error, here, place = episode.unit, episode.error, self.squares[-1], self.places[-1]
+        held = frozenset(square for square in self.held[-1] if self.at(square, self.step) is not False)
+        word, found = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]]()
+        vector = episode.motion(self.step + 1, self.angle) if word == ("push" if held else "move") else (0, 0)
+        if held and word not in ("push", "release"):
+            refuse(f"step {self.step + 1}: what may be held is not pushed or released")
+        if not any(vector):
+            if word == "grasp":
+                held = self.piece(episode, self.step, TOUCH_NAMES.index(episode.actions[self.step + 1]["direction"]))
+            return {here: self.after(here, place, Spots(), Spots() if word == "release" else held, Spots())}
+        swept = sweep(place, vector, unit)
+        barred = {square for square in swept if self.at(square, self.step) is not False}
+        ahead = list(product(*({0, (v > 0) - (v < 0)} for v in vector)))
+        boxes = [[led((p[0] + v, p[1] + v), 0, error) for p, v in zip(place, vector, strict=True)]]
+        for square in swept:  # a motion may have been stopped where it would have gone on in an occupied square
+            if held or any((square[0] + a, square[1] + b) in barred for a, b in ahead):
+                ways = zip(place, vector, square, strict=True)
+                boxes.append([led(common(led(p, v, 0), side_of(k, unit)), 0, 0 if v else error) for p, v, k in ways])
+        for x, y in boxes:
+            for square in touched((x, y), unit):
+                found.setdefault(square, []).append((x, y))
+        since = max(k for k, row in enumerate(episode.actions[: self.step + 1]) if not row or row["do"] == "grasp")
+        taken = [square for square in self.held[since] if held and self.at(square, since) is not False]
+        cases: dict[Spot, Course] = {}
+        for square, ends in sorted(end for end in found.items() if only in (None, end[0])):
+            low, high = ([side(end[n][k] for end in ends) for n in (0, 1)] for k, side in enumerate((min, max)))
+            x, y = box = [common((low[n], high[n]), side_of(square[n], unit)) for n in (0, 1)]
+            by = zip(box, self.places[since], strict=True)
+            (a, b), (c, d) = ((now[0] - then[1] - error, now[1] - then[0] + error) for now, then in by)
+            spans = [((i * unit + a, (i + 1) * unit + b), (j * unit + c, (j + 1) * unit + d)) for i, j in taken]
+            after = frozenset(at for span in spans for at in touched(span, unit))
+            cases[square] = self.after(square, (x, y), swept, after, held | after)
+        return cases
+
+    def after(self, end: Spot, box: Zone, swept: Spots, held: Spots, moved: Spots) -> "Course":
+        """Return the case after one more command, which ended in a square, and carried something through others."""
+        changes = {**self.changes, **{at: (*self.changes.get(at, ()), self.step + 1) for at in moved}}
+        stays = {(*at, self.step + 1): True for at in moved - self.held[-1] if self.at(at, self.step)}
+        rows = (*self.places, box), (*self.squares, end), (*self.swept, swept), (*self.held, held)
+        return Course(self.angle, self.occupied | stays if stays else self.occupied, changes, *rows)
+
+    def piece(self, episode: Evidence, step: int, touch: int) -> Spots:
+        """Return the squares in which the thing lies that was felt: all about them are settled as free; () for none."""
+        if episode.touches[step][touch] in (None, VERGE_LETTER):
+            return frozenset()
+        piece = {self.touch(step, touch) or refuse("what was grasped was felt between two squares")}
+        edge = list(piece)
+        while edge:
+            i, j = edge.pop()
+            around = {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - piece
+            new = {square for square in around if self.at(square, step) is not False}
+            edge += new
+            piece |= new
+            if len(piece) > MAX_SQUARES:
+                refuse(f"nothing bounds the thing felt at step {step}")
+        return frozenset(piece)
+
+    def replayed(self, episode: Evidence) -> "Course | None":
+        """Return the case with its places by all that is settled now; None where a command cannot have ended so."""
+        again: Course | None = Course(self.angle, self.occupied, {}, self.places[:1])
+        for square in self.squares[1:]:
+            again = again and again.ends(episode, square).get(square)
+        return again and again._replace(changes=self.changes, held=self.held)
+
+    def settle(self, episode: Evidence, terms: list[tuple[int, int, int]]) -> bool:
+        """Settle squares by a sum of counts, (step, field, multiplier) each; return whether no count fits it."""
+        weights: dict[Key, int] = {}
+        least = most = 0  # of the sum over the squares that are sampled for sure
+        for step, field, multiplier in terms:
+            counts = episode.ranges.get((step, field)) if step <= self.step else None
+            ends = [multiplier * n for n in counts or refuse("a count is of no field of an impression so far")]
+            squares, slack = sampled(self.angle)[field]
+            least += min(ends) - max(multiplier * slack, 0)
+            most += max(ends) - min(multiplier * slack, 0)
+            column, row = self.squares[step]
+            for (i, j), weight in squares.items():
+                key = self.key((column + i, row + j), step)
+                weights[key] = weights.get(key, 0) + multiplier * weight
+        low = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight < 0))
+        high = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight > 0))
+        for key, weight in [(key, weight) for key, weight in weights.items() if key not in self.occupied and weight]:
+            if low + abs(weight) > most:  # it counts as little as it can
+                self.occupied[key] = weight < 0
+            elif high - abs(weight) < least:  # as much as it can
+                self.occupied[key] = weight > 0
+        return low > most or high < least
+
+    def was_free(self, square: Spot) -> bool:
+        """Return whether nothing covered a square at some step."""
+        return any(self.occupied.get((*square, k)) is False for k in (0, *self.changes.get(square, ())))
+
+    def carried(self, episode: Evidence, felt: Spot, step: int) -> int:
+        """Return the last step up to one at which the thing felt may be held, if it was grasped next; else -1."""
+        grasp, way = felt[0] + 1, {"do": "grasp", "direction": TOUCH_NAMES[felt[1]]}
+        is_taken = grasp <= step and episode.actions[grasp] == way
+        return next((k for k in range(grasp, step) if not self.held[k + 1]), step) if is_taken else -1
+
+    def covered(self, episode: Evidence, felt: Spot, step: int) -> set[Spot]:
+        """Return squares that the thing felt covers for sure at a step."""
+        spot, last = self.touch(*felt), self.carried(episode, felt, step)
+        is_left = spot and felt[0] <= step and self.key(spot, felt[0]) == self.key(spot, step)
+        covered = {spot} if spot and is_left else set[Spot]()
+        for square, changes in self.changes.items():  # what was free before and is occupied now covers what was held
+            since = [0, *(k for k in changes if k <= step)]
+            free = any(self.occupied.get((*square, k)) is False and end > felt[0] + 1 for k, end in pairwise(since))
+            if free and since[-1] <= last and self.occupied.get((*square, since[-1])):
+                covered.add(square)
+        return covered
+
+
+def waking_case(angle: int, episode: Evidence) -> Course:
+    """Return the case of waking with one orientation of the grid."""
+    return Course(angle, {}, {}, (((0, episode.unit), (0, episode.unit)),))
