@@ -51,6 +51,8 @@ def main() -> int:
         if lost := lost_truth(walk):
             counts[f"{FALSE}: what happened is excluded"] += 1
             print(seed, "what happened is excluded:", lost, flush=True)
+        else:
+            counts["what happened is allowed"] += 1
         if not options.truth_alone:
             _count(walk, "impossible" if options.rooms else "done", seed, options.mutants, counts, times)
     print(dict(sorted(counts.items())))
