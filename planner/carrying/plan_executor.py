@@ -83,7 +83,7 @@ class PlanExecutor:
         self._plans = 0  # how many were made
         self._contacts: dict[str, int] = {}  # how often an object stood against something unexpectedly
         self._pushed: Translate | None = None  # the last motion with a held object, if a push, and not a retreat
-        self._has_moved = False  # whether the newest command of a plan was a motion with the held object
+        self._is_anew = False  # whether the held object was grasped since a plan moved it last
         self._went_on: XY | None = None  # where a plan was last made that goes on with the present grasp
 
     @property
@@ -210,7 +210,7 @@ class PlanExecutor:
         """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan."""
         if act.unplanned_push is not None:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
-            self._has_moved = True
+            self._is_anew = False
 
     def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Advice:
         """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
@@ -244,7 +244,7 @@ class PlanExecutor:
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
             self.failed.record(model.object(plan.name), model)
-        if held is None or not held.stuck or not self._has_moved:  # it may be in hand anew since it did not move
+        if held is None or not held.stuck or self._is_anew:
             return no_need
         if held.moved:
             self._contacts[held.name] = self._contacts.get(held.name, 0) + 1
@@ -346,7 +346,7 @@ class PlanExecutor:
         polygon = motion.carry(plan.polygon)
         x, y = model.place
         place = (x + motion.dx, y + motion.dy) if isinstance(motion, Translate) else (x, y)
-        self._pushed, self._has_moved = motion if isinstance(motion, Translate) else None, True
+        self._pushed, self._is_anew = motion if isinstance(motion, Translate) else None, False
         rest = replace(leg, motions=leg.motions[1:])
         self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
         moved = "pushed" if isinstance(motion, Translate) else "turned"
@@ -380,7 +380,7 @@ class PlanExecutor:
         if direction is None:
             return Infeasibility(False, f"{plan.name} is not felt where it should be grasped: it lies otherwise")
         self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
-        self._has_moved = False
+        self._is_anew = True
         why = f"{plan.name} is grasped, to be carried to its place ({plan.target})"
         return Act(Grasp(direction), why, steps=(grasp(plan.name, direction), *self._plan.steps(model)))
 
