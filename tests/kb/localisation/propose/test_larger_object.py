@@ -86,3 +86,20 @@ def test_the_shape_class_of_a_larger_object_is_measured_anew() -> None:
     assert node is not None
     assert node.shape["brick"] > 50
     assert node.shape["square"] < 50
+
+
+@pytest.mark.parametrize("by", [4.0, 12.0])
+def test_an_arm_that_leans_on_a_wall_comes_along_with_its_thing(by: float) -> None:
+    """A U seems an L while one of its arms leans on the end of a wall, and so seems to be the end of that."""
+    wall = ["b" + "." * 28 + "bbb" + "." * 17 + "b"] * 12
+    room = world_of(["b" * 49, *wall, *["b" + "." * 47 + "b"] * 10, "b" * 49])
+    thing = shapely.box(20, 5, 32, 11) - shapely.box(23, 8, 29, 11)
+    knowledge, here = Knowledge(), (19, 10)
+    knowledge.wake(impression(around(thing, room), (19, 4)))
+    knowledge.perceive(Move(0.0, 6.0), impression(around(thing, room), here))
+    felt = translate(thing & shapely.box(20, 5, 29, 11), -here[0], -4)
+    knowledge.tracker.grasp(HeldObject("o1", felt, felt))
+    after = impression(around(translate(thing, -by), room), (round(here[0] - by), here[1]))
+    _, accommodated = knowledge.perceive(Push(-by, 0.0), after)
+    assert accommodated.explanation.how == "larger"
+    assert knowledge.memory.held_objects["o1"].polygon.equals(translate(thing, -here[0] - by, -4))
