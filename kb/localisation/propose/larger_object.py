@@ -4,6 +4,7 @@ What touches a wall looks one with it, and is told apart only where it sticks ou
 door or a niche, or away from a wall, floor shows where wall seemed to be, and so how far the object went on.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -14,11 +15,12 @@ from utak.geometry.motion.se2 import Translate
 from utak.kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from utak.kb.localisation.hypotheses.contacts import square_polygon
 from utak.kb.localisation.hypotheses.explanation import Explanation
+from utak.kb.localisation.hypotheses.frames import Position
 from utak.kb.localisation.known.situation import ObservedSituation, count_clashes
-from utak.kb.mapping.obstacle_chance import UNSEEN_PROBABILITY, ObstacleChance
+from utak.kb.mapping.obstacle_chance import ObstacleChance
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from utak.kb.mapping.patch import patch_of_polygon, patch_of_squares
-from utak.kb.objects.held_object import HeldObject, Square, is_grid_aligned
+from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square, is_grid_aligned
 
 MAX_HIDDEN_DEPTH = 8  # squares by which an object may go on in what seems to be wall; a bound on time
 BESIDE_END = range(-3, 4)  # squares about the end of an object: one field of 4 x 4 may show them together (derived)
@@ -30,31 +32,33 @@ def propose(situation: ObservedSituation) -> Iterator[Explanation]:
     held, motion = situation.held, situation.motion
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
-    for side in SIDE_DIRECTIONS:
-        # It goes on in a wall as broad as it is, or the rest stands beside it, as an arm of a U that leans on a wall.
-        drawn = list(_drawn_out(held, side, situation.state.occupancy))
-        standing = list(_with_what_stands(held, side, situation))
-        for larger, ends in ((drawn, False), (standing, len(standing) < MAX_HIDDEN_DEPTH)):
-            agreeing = list(_agreeing_lengths(situation, larger, ends))
-            if agreeing:
-                yield _best_length(agreeing, situation)._replace(distance=agreeing[0].explanation.distance)
+    chance = ObstacleChance(situation.state.occupancy, situation.state.completions)
+    shown = _shown_by(situation, motion, chance)
+    for least in (held, *shown):
+        for side in SIDE_DIRECTIONS:
+            # It goes on in a wall as broad as it is, or the rest stands beside it: the arm of a U that leans on a wall.
+            drawn = _drawn_out(least, side, situation.state.occupancy)
+            for larger in map(list, (drawn, _with_what_stands(least, side, chance))):
+                wholes = [least] * (least is not held) + larger
+                agreeing = list(_agreeing_lengths(situation, wholes, ends=len(larger) < MAX_HIDDEN_DEPTH))
+                if agreeing:
+                    yield _best_length(agreeing, situation)._replace(distance=agreeing[0].explanation.distance)
 
 
 class _Length(NamedTuple):
     """A length by which an object may go on to one side, with which the observation agrees."""
 
     explanation: Explanation  # that it does
-    ends: bool  # whether all that was hidden had been settled as occupied, or floor had been seen beyond it
+    ends: bool  # whether floor had been seen beyond what was hidden
     floor: OccupancyMap  # the map with floor in place of what was hidden
     held_objects: list[HeldObject]  # all held objects after the motion, the larger one last
 
 
 def _best_length(agreeing: list[_Length], situation: ObservedSituation) -> Explanation:
     """Return the best of some lengths of an object to one side, given the least first."""
-    # It is the greatest over squares that had been settled as occupied, or up to floor, or else the least; but a
-    # greater one where something stands at the end that only the greater one accounts for.
-    settled = [length for length in agreeing if length.ends]
-    best = settled[-1] if settled else agreeing[0]
+    # It is the one up to floor, for what stands in a gap of a wall mostly is as deep as that, or else the least; but
+    # a greater one where something stands at the end that only the greater one accounts for.
+    best = agreeing[-1] if agreeing[-1].ends else agreeing[0]
     for length in agreeing[agreeing.index(best) + 1 :]:
         lying, further = (patch_of_polygon(one.held_objects[-1].polygon).squares() for one in (best, length))
         beside = {(x + i, y + j) for x, y in further - lying for i in BESIDE_END for j in BESIDE_END}
@@ -84,16 +88,55 @@ def _agreeing_lengths(situation: ObservedSituation, larger: Sequence[HeldObject]
     """
     occupancy, seen = situation.state.occupancy, patch_of_polygon(situation.held.polygon).squares()
     others = situation.state.others(situation.held)
-    for depth, whole in enumerate(larger, 1):
+    for whole in larger:
         hidden = patch_of_polygon(whole.polygon).squares() - seen
-        settled = all(occupancy.state[occupancy.index(*square)] == OCCUPIED for square in hidden)
         outcome = predicted_outcome(situation.state.place, whole.polygon, situation.motion)._replace(how="larger")
         patch, floor = patch_of_squares(hidden), occupancy.copy()
         floor.declare_patch(patch, FREE, len(situation.state.observations) - 1)
         held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
         if not count_clashes(situation.state.frame, floor, held_objects, outcome.place, situation.ranges):
-            found = Explanation("larger", outcome.place, situation.state.frame, 0, float(depth), outcome, instead=whole)
-            yield _Length(found, settled or (ends and depth == len(larger)), floor, held_objects)
+            bounds = zip(whole.polygon.bounds, situation.held.polygon.bounds, strict=True)
+            further = sum(abs(one - other) for one, other in bounds)
+            found = Explanation("larger", outcome.place, situation.state.frame, 0, further, outcome, instead=whole)
+            yield _Length(found, ends and whole is larger[-1], floor, held_objects)
+
+
+def _shown_by(situation: ObservedSituation, motion: Translate, chance: ObstacleChance) -> list[HeldObject]:
+    """Return the object with all that came along and all that left where it was, in a list; [] where nothing did.
+
+    Also [] after a motion that was not one by whole squares.
+    """
+    held, state = situation.held, situation.state
+    dx, dy = round(motion.dx), round(motion.dy)
+    if max(abs(motion.dx - dx), abs(motion.dy - dy)) > COMMAND_ROUNDING:
+        return []
+    outcome = predicted_outcome(state.place, held.polygon, motion)
+    others = set[Square]().union(*(other.possible.squares() for other in state.others(held)))
+    before, after = (patch_of_polygon(polygon).squares() for polygon in (held.polygon, outcome.polygon))
+    occupied, free = _whole_fields(situation, outcome.place)
+    came = {(x - dx, y - dy) for x, y in occupied - after - others if chance.likeliest((x, y)) == FREE}
+    left = {square for square in free - before - others if chance.likeliest(square) == OCCUPIED}
+    reach = held.polygon.envelope.buffer(MAX_HIDDEN_DEPTH, join_style="mitre")
+    hidden = [cell for cell in map(square_polygon, came | left) if reach.covers(cell)]
+    if not hidden:
+        return []
+    known = shapely.union_all([held.polygon, *hidden])
+    whole = _joined(held, known, known.envelope, chance)
+    return [] if whole.polygon.interiors else [whole]
+
+
+def _whole_fields(situation: ObservedSituation, place: Position) -> tuple[set[Square], set[Square]]:
+    """Return the squares under fields that are all occupied, and those under fields all free, seen from a place."""
+    samples, (x, y) = situation.state.frame.samples(), (math.floor(v) for v in place)
+    weight, (least, most) = samples.weight.sum(1), situation.ranges.T
+    occupied, free = (
+        {
+            (x + column, y + row)
+            for column, row in zip(samples.columns[under].tolist(), samples.rows[under].tolist(), strict=True)
+        }
+        for under in ((samples.weight > 0) & fields[:, None] for fields in (least - samples.slack >= weight, most <= 0))
+    )
+    return occupied, free
 
 
 def _drawn_out(held: HeldObject, side: tuple[int, int], occupancy: OccupancyMap) -> Iterator[HeldObject]:
@@ -108,34 +151,29 @@ def _drawn_out(held: HeldObject, side: tuple[int, int], occupancy: OccupancyMap)
         yield _of_outline(held, polygon)
 
 
-def _with_what_stands(held: HeldObject, side: tuple[int, int], situation: ObservedSituation) -> Iterator[HeldObject]:
+def _with_what_stands(held: HeldObject, side: tuple[int, int], chance: ObstacleChance) -> Iterator[HeldObject]:
     """Yield an object with what stands beside its rectangle, by one square, by two, until nothing more stands there."""
-    occupancy = situation.state.occupancy
-    chance = ObstacleChance(occupancy, situation.state.completions)
     west, south, east, north = held.polygon.bounds
     covered = patch_of_polygon(held.polygon).squares()
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
         x, y = (depth * step for step in side)
         rectangle = shapely.box(west + min(x, 0), south + min(y, 0), east + max(x, 0), north + max(y, 0))
-        beside = rectangle.difference(shapely.box(west, south, east, north))
-        squares = patch_of_polygon(beside).squares()
-        floor = [square_polygon(square) for square in squares if _is_likely_floor(square, occupancy, chance)]
-        joined = shapely.union_all([held.polygon, beside.difference(shapely.union_all(floor))])
-        polygon = next(part for part in shapely.get_parts(joined) if part.intersection(held.polygon).area)
-        before, covered = covered, patch_of_polygon(polygon).squares()
-        if polygon.interiors or covered == before:
+        whole = _joined(held, held.polygon, rectangle, chance)
+        before, covered = covered, patch_of_polygon(whole.polygon).squares()
+        if whole.polygon.interiors or covered == before:
             return
-        yield _of_outline(held, polygon)
+        yield whole
+
+
+def _joined(held: HeldObject, known: Any, rectangle: Any, chance: ObstacleChance) -> HeldObject:
+    """Return an object with what is known of it, and what stands in a rectangle beside its own and joins that."""
+    beside = rectangle.difference(held.polygon.envelope)
+    squares = patch_of_polygon(beside).squares()
+    floor = [square_polygon(square) for square in squares if chance.likeliest(square) == FREE]
+    joined = shapely.union_all([known, beside.difference(shapely.union_all(floor))])
+    return _of_outline(held, next(part for part in shapely.get_parts(joined) if part.intersection(held.polygon).area))
 
 
 def _of_outline(held: HeldObject, polygon: Any) -> HeldObject:
     """Return an object with another outline; its shape class is unknown then."""
     return replace(held, polygon=polygon, first=polygon, shape={})
-
-
-def _is_likely_floor(square: Square, occupancy: OccupancyMap, chance: ObstacleChance) -> bool:
-    """Return whether a square was seen as floor, or more likely is floor than not by what was seen of it."""
-    if occupancy.state[occupancy.index(*square)] != OPEN:
-        return bool(occupancy.state[occupancy.index(*square)] == FREE)
-    occupied = chance.occupied(square)
-    return occupied is not UNSEEN_PROBABILITY and bool(occupied.mean() < 0.5)

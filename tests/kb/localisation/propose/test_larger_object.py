@@ -103,3 +103,22 @@ def test_an_arm_that_leans_on_a_wall_comes_along_with_its_thing(by: float) -> No
     _, accommodated = knowledge.perceive(Push(-by, 0.0), after)
     assert accommodated.explanation.how == "larger"
     assert knowledge.memory.held_objects["o1"].polygon.equals(translate(thing, -here[0] - by, -4))
+
+
+@pytest.mark.parametrize(
+    "felt", [shapely.box(20, 10, 22, 11), shapely.box(21, 10, 22, 11), shapely.box(20, 10, 23, 11)]
+)
+@pytest.mark.parametrize("by", [1.0, 3.0])
+def test_a_thing_flush_in_a_niche_comes_out_with_all_its_sides(felt: shapely.Polygon, by: float) -> None:
+    """Of a thing that fills a niche only the squares that were felt seem a thing."""
+    rows = ["b" * 40, *["b" * 20 + "..." + "b" * 17] * 3, *["b" + "." * 38 + "b"] * 9, "b" * 40]
+    room, thing, here = world_of(rows), shapely.box(20, 10, 23, 13), (21, 9)
+    knowledge = Knowledge()
+    knowledge.wake(impression(around(thing, room), (15, 6)))
+    knowledge.perceive(Move(6.0, 3.0), impression(around(thing, room), here))
+    lying = translate(felt, -15, -6)
+    knowledge.tracker.grasp(HeldObject("o1", lying, lying))
+    after = impression(around(translate(thing, 0, -by), room), (here[0], round(here[1] - by)))
+    _, accommodated = knowledge.perceive(Push(0.0, -by), after)
+    assert accommodated.explanation.how == "larger"
+    assert knowledge.memory.held_objects["o1"].polygon.equals(translate(thing, -15, -6 - by))
