@@ -30,8 +30,13 @@ SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, 
 def propose(situation: ObservedSituation) -> Iterator[Explanation]:
     """Yield explanations that a push went as commanded and the object is larger than it seemed."""
     held, motion = situation.held, situation.motion
-    if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
-        return
+    if (
+        not isinstance(motion, Translate)
+        or held.turned
+        or not is_grid_aligned(held.first)
+        or max(map(abs, _way(held))) >= 1
+    ):
+        return  # what left a square showed then how large it is
     chance = ObstacleChance(situation.state.occupancy, situation.state.completions)
     shown = _shown_by(situation, motion, chance)
     for least in (held, *shown):
@@ -86,10 +91,10 @@ def _agreeing_lengths(situation: ObservedSituation, larger: Sequence[HeldObject]
 
     ends : whether floor was seen beyond the last one.
     """
-    occupancy, seen = situation.state.occupancy, patch_of_polygon(situation.held.polygon).squares()
+    occupancy, seen = situation.state.occupancy, patch_of_polygon(situation.held.first).squares()
     others = situation.state.others(situation.held)
     for whole in larger:
-        hidden = patch_of_polygon(whole.polygon).squares() - seen
+        hidden = patch_of_polygon(whole.first).squares() - seen
         outcome = predicted_outcome(situation.state.place, whole.polygon, situation.motion)._replace(how="larger")
         patch, floor = patch_of_squares(hidden), occupancy.copy()
         floor.declare_patch(patch, FREE, len(situation.state.observations) - 1)
@@ -107,22 +112,23 @@ def _shown_by(situation: ObservedSituation, motion: Translate, chance: ObstacleC
     Also [] after a motion that was not one by whole squares.
     """
     held, state = situation.held, situation.state
-    dx, dy = round(motion.dx), round(motion.dy)
-    if max(abs(motion.dx - dx), abs(motion.dy - dy)) > COMMAND_ROUNDING:
+    east, north = (one + other for one, other in zip(_way(held), (motion.dx, motion.dy), strict=True))
+    dx, dy = round(east), round(north)
+    if max(abs(east - dx), abs(north - dy)) > COMMAND_ROUNDING:
         return []
     outcome = predicted_outcome(state.place, held.polygon, motion)
     others = set[Square]().union(*(other.possible.squares() for other in state.others(held)))
-    before, after = (patch_of_polygon(polygon).squares() for polygon in (held.polygon, outcome.polygon))
+    before, after = (patch_of_polygon(polygon).squares() for polygon in (held.first, outcome.polygon))
     occupied, free = _whole_fields(situation, outcome.place)
     came = {(x - dx, y - dy) for x, y in occupied - after - others if chance.likeliest((x, y)) == FREE}
     left = {square for square in free - before - others if chance.likeliest(square) == OCCUPIED}
-    reach = held.polygon.envelope.buffer(MAX_HIDDEN_DEPTH, join_style="mitre")
+    reach = held.first.envelope.buffer(MAX_HIDDEN_DEPTH, join_style="mitre")
     hidden = [cell for cell in map(square_polygon, came | left) if reach.covers(cell)]
     if not hidden:
         return []
-    known = shapely.union_all([held.polygon, *hidden])
+    known = shapely.union_all([held.first, *hidden])
     whole = _joined(held, known, known.envelope, chance)
-    return [] if whole.polygon.interiors else [whole]
+    return [] if whole.first.interiors else [whole]
 
 
 def _whole_fields(situation: ObservedSituation, place: Position) -> tuple[set[Square], set[Square]]:
@@ -141,10 +147,10 @@ def _whole_fields(situation: ObservedSituation, place: Position) -> tuple[set[Sq
 
 def _drawn_out(held: HeldObject, side: tuple[int, int], occupancy: OccupancyMap) -> Iterator[HeldObject]:
     """Yield an object that goes on to one side as broad as it is, by one square, by two, up to floor that was seen."""
-    seen = patch_of_polygon(held.polygon).squares()
+    seen = patch_of_polygon(held.first).squares()
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
         steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
-        polygon = shapely.union_all([step.carry(held.polygon) for step in steps])
+        polygon = shapely.union_all([step.carry(held.first) for step in steps])
         hidden = patch_of_polygon(polygon).squares() - seen
         if any(occupancy.state[occupancy.index(*square)] == FREE for square in hidden):
             return
@@ -153,27 +159,33 @@ def _drawn_out(held: HeldObject, side: tuple[int, int], occupancy: OccupancyMap)
 
 def _with_what_stands(held: HeldObject, side: tuple[int, int], chance: ObstacleChance) -> Iterator[HeldObject]:
     """Yield an object with what stands beside its rectangle, by one square, by two, until nothing more stands there."""
-    west, south, east, north = held.polygon.bounds
-    covered = patch_of_polygon(held.polygon).squares()
+    west, south, east, north = held.first.bounds
+    covered = patch_of_polygon(held.first).squares()
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
         x, y = (depth * step for step in side)
         rectangle = shapely.box(west + min(x, 0), south + min(y, 0), east + max(x, 0), north + max(y, 0))
-        whole = _joined(held, held.polygon, rectangle, chance)
-        before, covered = covered, patch_of_polygon(whole.polygon).squares()
-        if whole.polygon.interiors or covered == before:
+        whole = _joined(held, held.first, rectangle, chance)
+        before, covered = covered, patch_of_polygon(whole.first).squares()
+        if whole.first.interiors or covered == before:
             return
         yield whole
 
 
 def _joined(held: HeldObject, known: Any, rectangle: Any, chance: ObstacleChance) -> HeldObject:
     """Return an object with what is known of it, and what stands in a rectangle beside its own and joins that."""
-    beside = rectangle.difference(held.polygon.envelope)
+    beside = rectangle.difference(held.first.envelope)
     squares = patch_of_polygon(beside).squares()
     floor = [square_polygon(square) for square in squares if chance.likeliest(square) == FREE]
     joined = shapely.union_all([known, beside.difference(shapely.union_all(floor))])
-    return _of_outline(held, next(part for part in shapely.get_parts(joined) if part.intersection(held.polygon).area))
+    return _of_outline(held, next(part for part in shapely.get_parts(joined) if part.intersection(held.first).area))
 
 
-def _of_outline(held: HeldObject, polygon: Any) -> HeldObject:
-    """Return an object with another outline; its shape class is unknown then."""
-    return replace(held, polygon=polygon, first=polygon, shape={})
+def _of_outline(held: HeldObject, first: Any) -> HeldObject:
+    """Return an object with another outline where it lay when first held; its shape class is unknown then."""
+    return replace(held, polygon=Translate(*_way(held)).carry(first), first=first, shape={})
+
+
+def _way(held: HeldObject) -> Position:
+    """Return how far an object that was not turned has been moved since it was first held."""
+    west, south, *_ = held.first.bounds
+    return held.polygon.bounds[0] - west, held.polygon.bounds[1] - south
