@@ -173,10 +173,9 @@ def _with_what_stands(held: HeldObject, side: tuple[int, int], chance: ObstacleC
 
 def _joined(held: HeldObject, known: Any, rectangle: Any, chance: ObstacleChance) -> HeldObject:
     """Return an object with what is known of it, and what stands in a rectangle beside its own and joins that."""
-    beside = rectangle.difference(held.first.envelope)
-    squares = patch_of_polygon(beside).squares()
+    squares = patch_of_polygon(rectangle).squares()
     floor = [square_polygon(square) for square in squares if chance.likeliest(square) == FREE]
-    joined = shapely.union_all([known, beside.difference(shapely.union_all(floor))])
+    joined = shapely.union_all([known, rectangle.difference(shapely.union_all([held.first.envelope, *floor]))])
     return _of_outline(held, next(part for part in shapely.get_parts(joined) if part.intersection(held.first).area))
 
 

@@ -122,3 +122,16 @@ def test_a_thing_flush_in_a_niche_comes_out_with_all_its_sides(felt: shapely.Pol
     _, accommodated = knowledge.perceive(Push(0.0, -by), after)
     assert accommodated.explanation.how == "larger"
     assert knowledge.memory.held_objects["o1"].polygon.equals(translate(thing, -15, -6 - by))
+
+
+def test_a_thing_may_fill_the_notch_of_what_was_felt() -> None:
+    rows = ["b" * 40, *["b" * 20 + ".." + "b" * 18] * 2, *["b" + "." * 38 + "b"] * 9, "b" * 40]
+    room, thing, here = world_of(rows), shapely.box(20, 10, 22, 12), (20, 9)
+    knowledge = Knowledge()
+    knowledge.wake(impression(around(thing, room), here))
+    lying = translate(thing - shapely.box(21, 11, 22, 12), -here[0], -here[1])
+    knowledge.tracker.grasp(HeldObject("o1", lying, lying))
+    after = impression(around(translate(thing, 0, -1), room), (here[0], here[1] - 1))
+    _, accommodated = knowledge.perceive(Push(0.0, -1.0), after)
+    assert accommodated.explanation.how == "larger"
+    assert knowledge.memory.held_objects["o1"].polygon.equals(translate(thing, -here[0], -here[1] - 1))
