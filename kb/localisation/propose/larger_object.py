@@ -87,10 +87,8 @@ def _clashes_beside(length: _Length, squares: set[Square], situation: ObservedSi
 
 
 def _agreeing_lengths(situation: ObservedSituation, larger: Sequence[HeldObject], ends: bool) -> Iterator[_Length]:
-    """Yield the lengths of an object, given the least first, with which the observation agrees.
-
-    ends : whether floor was seen beyond the last one.
-    """
+    """Yield the lengths of an object, given the least first, with which the observation agrees."""
+    # ends : whether floor was seen beyond the last one.
     occupancy, seen = situation.state.occupancy, patch_of_polygon(situation.held.first).squares()
     others = situation.state.others(situation.held)
     for whole in larger:
@@ -107,10 +105,8 @@ def _agreeing_lengths(situation: ObservedSituation, larger: Sequence[HeldObject]
 
 
 def _shown_by(situation: ObservedSituation, motion: Translate, chance: ObstacleChance) -> list[HeldObject]:
-    """Return the object with all that came along and all that left where it was, in a list; [] where nothing did.
-
-    Also [] after a motion that was not one by whole squares.
-    """
+    """Return the object with all that came along and all that left where it was, in a list; [] where nothing did."""
+    # Also [] after a motion that was not one by whole squares.
     held, state = situation.held, situation.state
     east, north = (one + other for one, other in zip(_way(held), (motion.dx, motion.dy), strict=True))
     dx, dy = round(east), round(north)
