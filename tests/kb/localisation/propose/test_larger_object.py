@@ -10,7 +10,7 @@ from utak.kb.body import Move, Push
 from utak.kb.knowledge import Knowledge
 from utak.kb.localisation.tracker import Tracker
 from utak.kb.mapping.occupancy import FREE, OCCUPIED
-from utak.kb.objects.held_object import HeldObject
+from utak.kb.objects.held_object import HeldObject, initial_insets
 
 HERE = (17, 12)  # table frame: (0, 0) of the map frame
 DOOR = ["b" + "." * 19 + "..." + "." * 17 + "b"] * 5
@@ -135,3 +135,22 @@ def test_a_thing_may_fill_the_notch_of_what_was_felt() -> None:
     _, accommodated = knowledge.perceive(Push(0.0, -1.0), after)
     assert accommodated.explanation.how == "larger"
     assert knowledge.memory.held_objects["o1"].polygon.equals(translate(thing, -here[0], -here[1] - 1))
+
+
+def test_a_thing_that_was_moved_by_a_part_of_a_square_may_still_be_larger() -> None:
+    """The walls beside it stay what they are."""
+    rows = ["b" * 40, *["b" * 20 + "..." + "b" * 17] * 3, *["b" + "." * 38 + "b"] * 9, "b" * 40]
+    room, thing, here = world_of(rows), shapely.box(20, 10, 23, 13), (21, 9)
+    knowledge = Knowledge()
+    knowledge.wake(impression(around(thing, room), here))
+    lying = translate(shapely.box(20, 10, 23, 11), -here[0], -here[1])
+    knowledge.tracker.grasp(HeldObject("o1", lying, lying, insets=initial_insets(lying)))
+    knowledge.perceive(Push(0.0, -0.1), impression(around(translate(thing, 0, -0.1), room), here))
+    assert knowledge.memory.held_objects["o1"].proven
+    after = impression(around(translate(thing, 0, -3.1), room), (here[0], here[1] - 3))
+    _, accommodated = knowledge.perceive(Push(0.0, -3.0), after)
+    assert accommodated.explanation.how == "larger"
+    held, occupancy = knowledge.memory.held_objects["o1"], knowledge.memory.occupancy
+    assert held.first.equals(translate(thing, -here[0], -here[1]))
+    assert {occupancy.state[occupancy.index(x, y)] for x in (-2, 2) for y in (1, 2, 3)} == {OCCUPIED}
+    assert not knowledge.memory.shaken
