@@ -124,7 +124,8 @@ def _shown_by(situation: ObservedSituation, motion: Translate, chance: ObstacleC
         return []
     known = shapely.union_all([held.first, *hidden])
     whole = _joined(held, known, known.envelope, chance)
-    return [] if whole.first.interiors else [whole]
+    found = patch_of_polygon(whole.first).squares() - before  # none where nothing that left was beside it
+    return [whole] if found and not whole.first.interiors else []
 
 
 def _whole_fields(situation: ObservedSituation, place: Position) -> tuple[set[Square], set[Square]]:

@@ -154,3 +154,15 @@ def test_a_thing_that_was_moved_by_a_part_of_a_square_may_still_be_larger() -> N
     assert held.first.equals(translate(thing, -here[0], -here[1]))
     assert {occupancy.state[occupancy.index(x, y)] for x in (-2, 2) for y in (1, 2, 3)} == {OCCUPIED}
     assert not knowledge.memory.shaken
+
+
+def test_what_left_elsewhere_is_no_part_of_the_thing() -> None:
+    rows = ["b" * 40, *["b" + "." * 38 + "b"] * 18, "b" * 40]
+    room, thing, block, here = world_of(rows), shapely.box(18, 10, 20, 12), shapely.box(18, 6, 20, 8), (17, 10)
+    knowledge = Knowledge()
+    knowledge.wake(impression(around(thing, around(block, room)), here))
+    lying = translate(thing, -here[0], -here[1])
+    knowledge.tracker.grasp(HeldObject("o1", lying, lying))
+    after = impression(around(translate(thing, -1), room), (here[0] - 1, here[1]))
+    knowledge.perceive(Push(-1.0, 0.0), after)
+    assert knowledge.memory.held_objects["o1"].polygon.area == thing.area
