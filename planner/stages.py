@@ -78,6 +78,11 @@ def is_at_start(goal: Fact) -> bool:
     return goal.name == "at" and str(goal.args[1]) == "start"
 
 
+def rests_on_waking(goal: Fact) -> bool:
+    """Return whether the place where a goal holds is told from where the robot woke."""
+    return goal.name in FIXED_GOALS or is_at_start(goal)
+
+
 def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str]:
     """Return the parameters of a task that a plan must not give another meaning."""
     # These are parameters that the task names otherwise than as what is brought somewhere: in constraints, as the

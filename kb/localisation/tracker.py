@@ -45,7 +45,7 @@ from utak.kb.localisation.propose.others import forgetting
 from utak.kb.localisation.propose.smaller_object import refined_extent
 from utak.kb.mapping.completions import Completions
 from utak.kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
-from utak.kb.mapping.patch import Patch, patch_of_squares
+from utak.kb.mapping.patch import Patch, patch_of_polygon, patch_of_squares
 from utak.kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square, held_or_moved, subtract_held_objects
 from utak.kb.perception.retina import count_ranges
 
@@ -254,7 +254,7 @@ class Tracker:
         """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline."""
         name, ranges = situation.held.name, situation.ranges
         if chosen.instead is not None:
-            self._declare(chosen.instead.possible, FREE)
+            self._declare(patch_of_polygon(chosen.instead.first), FREE)
             self.update_object(chosen.instead)
         if chosen.left:
             self._declare(patch_of_squares(chosen.left), OCCUPIED)

@@ -11,7 +11,7 @@ import numpy as np
 
 from utak.geometry.kernels.arrays import Floats, Square
 from utak.kb.mapping.completions import Completions
-from utak.kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
+from utak.kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 ERROR_PROBABILITY = 0.001  # that all completions show a square wrongly; tuned on random worlds (benchmarks.campaign)
 ERROR_PROBABILITY_AT_EDGE = 0.02  # likewise of a square next to one that some completion shows occupied; tuned
@@ -32,6 +32,13 @@ class ObstacleChance:
         if square not in self._known:
             self._known[square] = self._probabilities(square)
         return self._known[square]
+
+    def likeliest(self, square: Square) -> int:
+        """Return what a square (x, y) of the map frame likeliest is, FREE or OCCUPIED; OPEN where nothing was seen."""
+        occupied = self.occupied(square)
+        if occupied is UNSEEN_PROBABILITY or occupied.mean() == 0.5:
+            return OPEN
+        return OCCUPIED if occupied.mean() > 0.5 else FREE
 
     def _probabilities(self, square: Square) -> Floats:
         """Return the probability that a square (x, y) of the map frame is occupied, by each completion."""

@@ -39,7 +39,7 @@ from utak.planner.skills.measure_gap import GapMeasurer
 from utak.planner.skills.measure_size import SizeEstimator, least_outline
 from utak.planner.skills.press import Presser
 from utak.planner.skills.try_passage import PassageTrials
-from utak.planner.stages import ORIGIN_GOALS, Stage
+from utak.planner.stages import Stage
 from utak.planner.subgoal_kind import SubgoalKind
 
 SHARE_TARGET = "share"  # the ends of pushes that give each side of a passage its share of what is missing
@@ -93,16 +93,14 @@ class Transporter:
 
     def _carry(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
         """Return the next command to carry the object of a goal, or the verdict; done when the goal holds."""
-        x = str(goal.args[0])
         assert node.polygon is not None
         land = self._land(goal, node, turn)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
-        lost = self._origins.lost(x, node, turn.situation)
+        lost = self._origins.lost(goal, node, turn.situation)
+        if lost and (land.holds or meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation))):
+            return Decision(None, f"it cannot be told whether {turn.stage} holds: {lost}", TaskVerdict.LIMIT)
         if land.holds:
-            if lost and goal.name in ORIGIN_GOALS:
-                why = f"it cannot be told whether {turn.stage} holds: {lost} since {node.name} was grasped"
-                return Decision(None, why, TaskVerdict.LIMIT)
             self._presser.begin(goal, node, land, turn.situation)
             return self._press_on(node, turn) or done(f"{goal} holds")
         if land.presses and not self._presser.has_begun(goal, node):

@@ -20,7 +20,7 @@ from utak.planner.goals.placement import KnownEnds, Placement, to_view_frame
 from utak.planner.goals.robot_goals import along, corner_side, hidden_from
 from utak.planner.screen.projection import dilate
 from utak.planner.situation import Situation
-from utak.planner.stages import DOOR_GOALS, FIXED_GOALS, TOUCHING_GOALS, Stage, is_at_start
+from utak.planner.stages import DOOR_GOALS, FIXED_GOALS, TOUCHING_GOALS, Stage, is_at_start, rests_on_waking
 
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
@@ -95,8 +95,8 @@ def _of_thing_beside(
 
 def _where_task_says(goal: Fact, land: Placement) -> list[Inside]:
     """Return the region in which an object lies where a goal holds, if the task says where, whatever is found."""
-    said = goal.name in FIXED_GOALS or is_at_start(goal)
-    return [end for end in land.must_reach.ends().values() if isinstance(end, Inside)] if said else []
+    said = land.must_reach.ends().values() if rests_on_waking(goal) else ()
+    return [end for end in said if isinstance(end, Inside)]
 
 
 def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:

@@ -1,16 +1,19 @@
 """Origins: where the things of the task were at first, and when that knowledge is lost.
 
-Some goals depend on where something was at first. The robot may be wrong about that place itself, once it was lost.
-What is the next room depends on the doors of the room where the thing was. When observations contradict what is
-believed, a door may disappear from the map. Then two rooms seem to be one, and another room seems to be the next one.
+Some goals depend on where something was at first, or on where the robot woke. The robot may be wrong about that place
+itself, once it was lost. What is the next room depends on the doors of the room where the thing was. When observations
+contradict what is believed, a door may disappear from the map. Then two rooms seem to be one, and another room seems to
+be the next one.
 """
 
 import math
 from typing import NamedTuple
 
 from utak.geometry.kernels.arrays import XY
+from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node
 from utak.planner.situation import Situation
+from utak.planner.stages import ORIGIN_GOALS, rests_on_waking
 
 DOOR_TOLERANCE = 3.0  # squares by which the believed place of a door may change while it counts as the same (tuned)
 
@@ -48,14 +51,19 @@ class Origins:
         self._known[parameter] = known._replace(name=node.name, moved=known.moved or node.moved, doors=doors)
         return began
 
-    def lost(self, parameter: str, node: Node, situation: Situation) -> str:
-        """Return in words why the noted origin of a thing is not reliable any more; "" while it is."""
-        known, model = self._known[parameter], situation.model
+    def lost(self, goal: Fact, node: Node, situation: Situation) -> str:
+        """Return in words why it is not reliable any more where a goal for a thing holds; "" while it is."""
+        known, model = self._known[str(goal.args[0])], situation.model
+        if rests_on_waking(goal) and model.anew:
+            return "the robot was lost since it woke"
+        if goal.name not in ORIGIN_GOALS:
+            return ""
         if model.anew and not known.anew:
-            return "the robot was lost"
+            return f"the robot was lost since {node.name} was grasped"
         now = [model.place_to_utak(*door.place) for door in situation.rooms.sure]
         gone = any(all(math.dist(was, door) > DOOR_TOLERANCE for door in now) for was in known.doors)
-        return "a door of its room was lost" if gone and node.moved and model.shaken else ""
+        doubtful = gone and node.moved and model.shaken
+        return f"a door of its room was lost since {node.name} was grasped" if doubtful else ""
 
 
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:

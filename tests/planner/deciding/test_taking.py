@@ -197,17 +197,32 @@ def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
     assert bool(needed_views(plan, node, situation)) == looks
 
 
-@pytest.mark.parametrize("lost", [False, True])
-def test_after_a_restart_an_object_is_not_said_to_be_in_the_next_room(lost: bool) -> None:
+@pytest.mark.parametrize(
+    ("goal", "told"),
+    [
+        ("through(x, d)", False),
+        ('pose(x, "POINT (3 4)", 0)', False),
+        ("at(x, start)", False),
+        ("at(x, corner(northeast))", True),
+    ],
+)
+@pytest.mark.parametrize(
+    "land", [Placement({}, holds=True), Placement({}, loose={"near": Inside(shapely.box(-9, -9, 99, 99))})]
+)
+def test_after_a_restart_an_object_is_not_said_to_be_where_only_the_old_map_shows(
+    goal: str, told: bool, land: Placement
+) -> None:
+    """Which room is the next one, and where the robot woke, was told by the map that it forgot."""
     situation = beside(())
     (node,) = situation.model.objects
-    transporter, stage = Transporter(), Stage(facts_from_text("through(x, d)."))
-    transporter.place = lambda *_: Placement({}, holds=True)
-    transporter.origin_of("x", node, situation)
-    after = situation_of(replace(situation.model, anew=lost), situation.binding)
-    decision = transporter.towards(stage.goals[0], turn_of(stage, after))
-    assert decision.verdict == (TaskVerdict.LIMIT if lost else TaskVerdict.DONE)
-    assert ("the robot was lost" in decision.why) == lost
+    for lost in (False, True):
+        transporter, stage = Transporter(), Stage(facts_from_text(f"{goal}."))
+        transporter.place = lambda *_: land
+        transporter.origin_of("x", node, situation)
+        after = situation_of(replace(situation.model, anew=lost), situation.binding)
+        decision = transporter.towards(stage.goals[0], turn_of(stage, after))
+        assert decision.verdict == (TaskVerdict.LIMIT if lost and not told else TaskVerdict.DONE)
+        assert ("the robot was lost" in decision.why) == (lost and not told)
 
 
 def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, RemainingPlan, Node, Stage]:

@@ -8,6 +8,7 @@ import shapely.affinity
 
 from tests.kb.drawings import known_model
 from tests.planner.situations import BESIDE_A_THING, situation_of
+from utak.kb.language.reader import facts_from_text
 from utak.kb.world.rooms import Rooms
 from utak.planner.goals.origins import Origins
 from utak.planner.situation import Situation
@@ -21,6 +22,7 @@ TWO_ROOMS = [
     *["b" + "." * 15 + "b" + "." * 15 + "b"] * 5,
     "b" * 33,
 ]
+(NEXT_ROOM,) = facts_from_text("in(x, room(next)).")
 
 
 def now(shaken: bool, rooms: Rooms | None = None, moved: bool = True) -> Situation:
@@ -36,7 +38,7 @@ def now(shaken: bool, rooms: Rooms | None = None, moved: bool = True) -> Situati
 def missed(origins: Origins, situation: Situation) -> bool:
     (node,) = situation.model.objects
     origins.at("x", node, situation)
-    return bool(origins.lost("x", node, situation))
+    return bool(origins.lost(NEXT_ROOM, node, situation))
 
 
 @pytest.mark.parametrize("shaken", [False, True])
@@ -89,7 +91,7 @@ def test_an_origin_is_remembered_when_the_name_changes() -> None:
     assert began("o4", 12, False, ("o3",)) == pytest.approx(13.0)
 
 
-@pytest.mark.parametrize(("before", "lost"), [(False, "the robot was lost"), (True, "")])
+@pytest.mark.parametrize(("before", "lost"), [(False, "the robot was lost since o1 was grasped"), (True, "")])
 def test_an_origin_noted_before_a_localisation_failure_is_lost(before: bool, lost: str) -> None:
     origins, model = Origins(), situation_of(known_model(BESIDE_A_THING)).model
     (node,) = model.objects
@@ -99,7 +101,8 @@ def test_an_origin_noted_before_a_localisation_failure_is_lost(before: bool, los
     def said(parameter: str, anew: bool) -> str:
         situation = situation_of(replace(model, anew=anew))
         origins.at(parameter, node, situation)
-        return origins.lost(parameter, node, situation)
+        (goal,) = facts_from_text(f"in({parameter}, room(next)).")
+        return origins.lost(goal, node, situation)
 
     assert not said("x", anew=False)
     assert said("x", anew=True) == lost
