@@ -325,3 +325,16 @@ def test_an_object_that_did_not_move_is_moved_another_way_with_the_same_grasp(
     found = PlanExecutor().advise(node, {"there": At(Pose(0.0, 2.0, 0.0))}, situation)
     assert isinstance(found, Act)
     assert found.command == command
+
+
+def test_what_was_grasped_anew_is_not_let_go_for_what_failed_before() -> None:
+    model = known_situation(["b" * 12, *["b..........b"] * 3, "b..ggU.....b", *["b..........b"] * 3, "b" * 12]).model
+    node, executor = replace(model.objects[0], resisted=("north",)), PlanExecutor()
+    situation = situation_of(replace(model, objects=(node,)))
+    taken = executor.advise(node, {"there": At(Pose(0.0, -2.0, 0.0))}, situation)
+    assert isinstance(taken, Act) and isinstance(taken.command, Grasp)
+    held = situation_of(replace(situation.model, held=node.name))
+    otherwise = executor.advise(node, {"elsewhere": At(Pose(2.0, 0.0, 0.0))}, held)
+    assert isinstance(otherwise, Act) and isinstance(otherwise.command, Push)
+    refused = executor.advise(node, {"there": At(Pose(0.0, 2.0, 0.0))}, held)
+    assert isinstance(refused, Act) and refused.command == Release()
