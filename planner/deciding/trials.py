@@ -3,8 +3,8 @@
 A passage may be wider than it seems: the robot walks against its sides.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from math import cos
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope, walls_to_feel
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, nothing_to_do
-from utak.planner.goals.placement import lies_clear_of
+from utak.planner.goals.placement import NEGLIGIBLE_LENGTH, lies_clear_of
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import move_to
 from utak.planner.screen.projection import dilate
@@ -84,20 +84,23 @@ def measure_gaps(
     """Return a refusal that counts with passages measured too narrow, and the next command to try or measure one."""
     # An object is pushed against a passage before that is measured: in the squares of a wall the robot's place is less
     # sure, and then pushes by parts of a square are.
-    situation, least = turn.situation, least_gap(least_outline(node))
-    model = situation.model
+    situation, outline = turn.situation, least_outline(node)
+    model, least = situation.model, least_gap(outline)
+    stays = outline.area if outline.minimum_rotated_rectangle.area - outline.area < NEGLIGIBLE_LENGTH**2 else 0.0
     shut = np.zeros_like(model.space)
     while refused.unless():
         if trial := try_passage(refused, node, ends, turn):
             return refused, trial
         gap = gaps.gap_of(refused.passage, model)
-        if gap is None or gap.width / cos(model.spread) >= least:
+        width = math.inf if gap is None else gap.width / math.cos(model.spread)
+        if gap is None or width >= least:
             break
         exact = gaps.is_exact(gap)
         if exact is None:
             return refused, _measure(gap, gaps, node, turn)
-        shut = shut | model.squares(gap.squares)
-        if not exact or not lies_clear_of(shut, node, ends, situation):
+        # No more of a rectangle comes through a gap that is narrower than it than a corner whose longest side it is.
+        shut, stays = shut | model.squares(gap.squares), stays - width**2 / 4
+        if not exact or not lies_clear_of(shut, stays, node, ends, situation):
             break
         again = turn.executor.infeasibility(node, ends, situation.with_too_narrow(node.name, shut))
         if again is None or not again.proved:

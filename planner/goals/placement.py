@@ -15,6 +15,7 @@ import shapely
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.manipulation.goals import At, Between, End, InCorner, Inside, is_goal_met, shape_at_pose
 from utak.geometry.motion.se2 import Pose, Translate
+from utak.geometry.raster.components import components
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
@@ -141,17 +142,24 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
     return mask & ~np.pad(situation.model.mask(node.patch), margin)
 
 
-def lies_clear_of(mask: Bools, node: Node, ends: Mapping[str, End], situation: Situation) -> bool:
+def lies_clear_of(mask: Bools, stays: float, node: Node, ends: Mapping[str, End], situation: Situation) -> bool:
     """Return whether an object lies on none of some squares, (rows, columns) bool, now and wherever it meets an end."""
+    # The squares fill gaps that it does not pass. stays : the area of it that surely does not come through any of them.
     rows, columns = np.nonzero(mask)
     squares = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
     shape = to_view_frame(node.polygon, situation)
     reach = math.dist(shape.bounds[:2], shape.bounds[2:])
+    thing = situation.model.mask(node.patch)
+    labels = components((situation.model.space | thing) & ~mask).labels
+    beyond = mask_to_polygon(situation.model.space & ~mask & ~np.isin(labels, labels[thing]))
 
     def is_clear(end: End) -> bool:
         """Return whether the object touches none of the squares wherever it meets an end."""
         if isinstance(end, Inside):
-            return bool(shapely.area(end.polygon.intersection(squares)) == 0)
+            return bool(
+                shapely.area(end.polygon.difference(beyond)) < stays
+                or shapely.area(end.polygon.intersection(squares)) == 0
+            )
         if isinstance(end, At):
             return not shapely.intersects(shape_at_pose(shape, end.pose), squares)
         if isinstance(end, InCorner | Between):

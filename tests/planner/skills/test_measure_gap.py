@@ -65,3 +65,20 @@ def test_the_step_back_from_a_wall_comes_next_and_another_row_is_measured_where_
     assert gaps.is_exact(first) is False
     other = gaps.gap_of(passage, model)
     assert other is not None and other != first and gaps.is_exact(other) is None
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("wide", "verdict"), [(2, "impossible"), (3, "done")])
+def test_a_goal_behind_a_measured_passage_is_impossible_where_too_little_room_is_before_it(
+    wide: int, verdict: str
+) -> None:
+    """What is around a corner begins before the passage: its first squares have no room for a brick."""
+    floor = f"(2 14, 2 24, 18 24, 18 14, {2 + wide} 14, {2 + wide} 2, 2 2, 2 14)"
+    scenario = utak.Scenario.from_text(
+        world=f"""table(20, 26). verge("POLYGON ((0 0, 0 26, 20 26, 20 0, 0 0), {floor})").
+        utak("POINT (4.5 15.5)", 0). object(g1, g, "POLYGON ((9 18, 9 21, 14 21, 14 18, 9 18))").""",
+        start="object(x).",
+        goal="around(x, corner).",
+    )
+    episode = utak.Run(scenario, max_steps=120).finish()
+    assert episode.verdict == verdict, episode.reason
