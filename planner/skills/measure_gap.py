@@ -21,8 +21,8 @@ from utak.kb.world.model import WorldModel
 
 STEP_BACK = 0.05  # squares back from a wall, within which the line is looked for where it begins; a convention
 PAST_DOUBT = 0.05  # squares into the wall, besides the way back and what the place is unsure; a convention
-MAX_LEEWAY = 0.2  # squares by which the place may be unsure for such a walk; a convention
-OFF_MIDDLE = 0.4  # squares from the middle of a row within which the robot walks along it; half a square is its side
+MAX_LEEWAY = 0.2  # squares by which the place along the row may be unsure for such a walk; a convention
+OFF_MIDDLE = 0.45  # squares from the middle of a row within which the robot surely walks; half a square is its side
 
 
 class PassageRow(NamedTuple):
@@ -100,8 +100,11 @@ class GapMeasurer:
         """Return where the robot shall walk to from within a gap, map frame; None while it is not there."""
         # looks : how many there were.
         x, y = model.place
-        leeway = max(map(abs, model.leeway))
-        astray = abs((y if gap.step[0] else x) % 1 - 0.5) > OFF_MIDDLE
+        west, south, east, north = map(abs, model.leeway)
+        leeway, across = max(west, east), max(south, north)
+        if gap.step[1]:
+            leeway, across = across, leeway
+        astray = abs((y if gap.step[0] else x) % 1 - 0.5) + across > OFF_MIDDLE
         if _square(model.place) not in gap.squares or astray or leeway > MAX_LEEWAY:
             return None
         side = 0 if (gap.squares[0], 0) not in self._exact else -1
