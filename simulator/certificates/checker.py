@@ -66,10 +66,10 @@ class CertificateCheck:
             refuse(f"a certificate has the keys {', '.join(KEYS_IN_ORDER)}, and no others")
         *head, self.steps, self.meaning, self.given, self.lines = (certificate[key] for key in KEYS_IN_ORDER)
         self.episode, self.claim = episode, head[2]
-        self.texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
-        if self.claim == "impossible":
-            self.texts = [text for text in self.texts if BARRED_GOAL.fullmatch(text)][:1]
-        if head != ["certificate", 1, self.claim, episode.goals] or self.claim not in VERDICTS_SHOWN or not self.texts:
+        texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
+        self.texts = texts if self.claim == "done" else [text for text in texts if BARRED_GOAL.fullmatch(text)][:1]
+        is_form = repr(head) == repr(["certificate", 1, self.claim, episode.goals])  # of all 1s the whole number alone
+        if not is_form or self.claim not in VERDICTS_SHOWN or not self.texts:
             refuse("it is no certificate of version 1, of goals of the episode that certificates show")
         self.goals = [goal_of(text, self.claim) for text in self.texts]
         if not are_whole(self.steps, len(self.goals)) or not all(0 <= k <= self.episode.last for k in self.steps):
@@ -130,7 +130,7 @@ class CertificateCheck:
                 if not all(self.holds(goal, case, step, args) for step, goal in self.timed):
                     refuse(f"line {number}: a goal may not hold")
                 case, shown = None, shown + 1
-            elif word == "angle" and not case and not left and args == [angle + 1] and angle + 1 < angles:
+            elif word == "angle" and not case and not left and repr(args) == f"[{angle + 1}]" and angle + 1 < angles:
                 angle, case = angle + 1, waking_case(angle + 1, self.episode)
             elif word == "end" and are_whole(args, 2) and (left if case is None else case.step < self.episode.last):
                 if case:

@@ -104,6 +104,10 @@ WRONG_CHANGES: list[tuple[Change, str]] = [
     ),  # its own square
     (lambda c: c["cases"].insert(1, ["count", [-1, 0, 1]]), "no field of an impression so far"),
     (lambda c: c["cases"].insert(1, ["count", [0, 0, True]]), "no line that may stand here"),
+    (lambda c: c.update(version=True), "no certificate of version 1"),
+    (lambda c: c.update(version=1.0), "no certificate of version 1"),
+    (lambda c: c["cases"].__setitem__(0, ["angle", 0.0]), "no line that may stand here"),
+    (lambda c: c["cases"].__setitem__(0, ["angle", False]), "no line that may stand here"),
 ]
 
 
