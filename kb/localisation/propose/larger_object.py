@@ -116,7 +116,8 @@ def _shown_by(situation: ObservedSituation, motion: Translate, chance: ObstacleC
     others = set[Square]().union(*(other.possible.squares() for other in state.others(held)))
     before, after = (patch_of_polygon(polygon).squares() for polygon in (held.first, outcome.polygon))
     occupied, free = _whole_fields(situation, outcome.place)
-    came = {(x - dx, y - dy) for x, y in occupied - after - others if chance.likeliest((x, y)) == FREE}
+    along = {(x - dx, y - dy) for x, y in occupied - after - others if chance.likeliest((x, y)) == FREE}
+    came = {square for square in along if chance.likeliest(square) != FREE}  # where floor was seen nothing was hidden
     left = {square for square in free - before - others if chance.likeliest(square) == OCCUPIED}
     reach = held.first.envelope.buffer(MAX_HIDDEN_DEPTH, join_style="mitre")
     hidden = [cell for cell in map(square_polygon, came | left) if reach.covers(cell)]
