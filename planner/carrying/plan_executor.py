@@ -11,9 +11,8 @@ from dataclasses import replace
 from utak.geometry.counts.retina import RETINA_ZONES
 from utak.geometry.kernels.arrays import XY, Bools
 from utak.geometry.manipulation.goals import End
-from utak.geometry.manipulation.plan_carrying import At, Inside
+from utak.geometry.manipulation.plan_carrying import At
 from utak.geometry.motion.se2 import Pose, Rotate, Translate
-from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.body import Grasp, Move, Push, Release
 from utak.kb.mapping.patch import Patch
 from utak.kb.objects.held_object import is_grid_aligned
@@ -35,7 +34,7 @@ from utak.planner.carrying.remaining_plan import (
     RemainingPlan,
     grasp_direction,
 )
-from utak.planner.goals.placement import pull_out_end
+from utak.planner.goals.placement import end_away_from, pull_out_end
 from utak.planner.screen.moves import is_at
 from utak.planner.screen.projection import SquareIndices, square_index
 from utak.planner.situation import Situation
@@ -160,8 +159,8 @@ class PlanExecutor:
 
     def continue_plan(self, node: Node, situation: Situation) -> Advice:
         """Return the next command of the plan under way for the held object, if there is such a plan."""
-        own = self._plan is not None and self._plan.name == node.name == situation.model.held
-        plan = self._operations.revalidate(self._plan, None, situation) if own and self._plan else None
+        begun = self.plan_of(node.name) if situation.model.held == node.name else None
+        plan = None if begun is None else self._operations.revalidate(begun, None, situation)
         if plan is None:
             return Infeasibility(False, f"no plan is under way for {node.name}")
         return self._next_step(plan, {}, situation)
@@ -183,8 +182,8 @@ class PlanExecutor:
         # There may be none (see `detour_push`), as when what is left of the plan is not one leg of pushes with the
         # object in hand.
         none = Infeasibility(False, "no push halts where it is seen")
-        plan = self._plan
-        if not self.pull or node.stuck or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
+        plan = self.plan_of(node.name)
+        if not self.pull or node.stuck or self._plans >= MAX_PLANS or plan is None:
             return none
         if len(plan.legs) != 1 or not plan.grasped or self._pushed is None:
             return none
@@ -297,13 +296,15 @@ class PlanExecutor:
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
         """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
-        for touch in touches_of_obstacles(found, situation):
+        touch = next(touches_of_obstacles(found, situation), None)
+        if touch is not None:
             return See(touch)
         asked = [self._plan_aside(other, found, situation) for other in situation.model.objects]
         cleared = [one for one in asked if one is not None]
         if cleared:
             return min(cleared, key=lambda one: one[1].plan.commands)
-        for look in looks_at_obstacles(found, situation):
+        look = next(looks_at_obstacles(found, situation), None)
+        if look is not None:
             return See(look)
         return Infeasibility(False, f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside")
 
@@ -323,8 +324,7 @@ class PlanExecutor:
         """Return an object and a plan that carries it off the squares that another plan needs; None for no such."""
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
-        room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
-        end = pull_out_end(other, found.swept, situation) or Inside(mask_to_polygon(room & ~found.swept))
+        end = pull_out_end(other, found.swept, situation) or end_away_from(found.swept, other, situation)
         for ends in (_ends_other_ways(other, {AWAY_TARGET: end}, situation), {AWAY_TARGET: end}):
             plan = self._oracle.find(self._request(other, ends, "", situation.model), situation) if ends else None
             if isinstance(plan, ManipulationPlan) and plan.plan.legs and not plan.aside:

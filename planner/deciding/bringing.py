@@ -12,6 +12,8 @@ from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.sights.frontiers import touch_viewpoint
 from utak.planner.subgoal_kind import SubgoalKind
 
+ASIDE_TARGET = "aside"  # the end of a plan that moves an object out of the robot's way
+
 
 def bring_to_end(node: Node, ends: Mapping[str, End], turn: StageTurn, purpose: str = "") -> Decision:
     """Return the next command to bring an object to an end, or to find out what it is; nothing when there is none."""

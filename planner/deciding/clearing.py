@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from utak.geometry.manipulation.goals import End
 from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node
-from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
+from utak.planner.deciding.bringing import ASIDE_TARGET, another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import Passages, feel_rim, feel_walls, feeling_scope, walls_to_feel
 from utak.planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from utak.planner.deciding.stage_turn import StageTurn
@@ -17,8 +17,6 @@ from utak.planner.goals.embedded import Supposition, suppose
 from utak.planner.goals.placement import POSSIBLE_OBJECT
 from utak.planner.sights.walls import is_ringed
 from utak.planner.situation import Situation
-
-ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
 
 
 class ObstacleClearer:

@@ -9,18 +9,17 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from utak.geometry.cspace.bottleneck import least_gap
-from utak.geometry.manipulation.goals import At, End, Inside
+from utak.geometry.manipulation.goals import At, End
 from utak.geometry.motion.se2 import Pose
-from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.terms import Fact
 from utak.kb.objects.movability import square_ways
 from utak.kb.world.model import Node
 from utak.planner.carrying.infeasibility import Infeasibility
-from utak.planner.deciding.bringing import another_way, bring_to_end, carry_on
+from utak.planner.deciding.bringing import ASIDE_TARGET, another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope, walls_to_feel
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, nothing_to_do
-from utak.planner.goals.placement import NEGLIGIBLE_LENGTH, lies_clear_of
+from utak.planner.goals.placement import NEGLIGIBLE_LENGTH, end_away_from, lies_clear_of
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import move_to
 from utak.planner.screen.projection import dilate
@@ -31,7 +30,6 @@ from utak.planner.skills.measure_size import least_outline
 from utak.planner.subgoal_kind import SubgoalKind
 
 ROOM_BEFORE = 2  # squares about a passage that are cleared for the robot to come into it; a convention
-AWAY_FROM_GAP = "aside"  # the end of a plan that brings away what stands before a passage
 GAP_REASON = "how wide a passage is shows where its walls stop the robot"
 
 
@@ -123,8 +121,8 @@ def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) ->
         return Decision(move_to(end, model), f"{GAP_REASON}; {turn.stage}")
     squares = model.squares(gap.squares)
     there = turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, np.flatnonzero(squares), GAP_REASON)])
-    near, thing = dilate(squares, ROOM_BEFORE), model.mask(node.patch)
-    if there or not (near & thing).any():
+    near = dilate(squares, ROOM_BEFORE)
+    if there or not (near & model.mask(node.patch)).any():
         return there
-    away = Inside(mask_to_polygon((turn.situation.cost_maps.free(0) | thing) & ~near))
-    return bring_to_end(node, {AWAY_FROM_GAP: away}, turn, f"{GAP_REASON}, and {node.name} stands before it: ")
+    away = end_away_from(near, node, turn.situation)
+    return bring_to_end(node, {ASIDE_TARGET: away}, turn, f"{GAP_REASON}, and {node.name} stands before it: ")

@@ -203,6 +203,12 @@ def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
     return None
 
 
+def end_away_from(squares: Bools, node: Node, situation: Situation) -> Inside:
+    """Return the end of an object that is moved off some squares, (rows, columns) bool, over surely free ones."""
+    room = situation.cost_maps.free(0) | situation.model.mask(node.patch)
+    return Inside(mask_to_polygon(room & ~squares))
+
+
 def robot_can_leave(node: Node, situation: Situation) -> bool:
     """Return whether the robot can walk away from an object: it does not hold it, or stands in no nook behind it."""
     held = situation.model.held == node.name

@@ -17,8 +17,9 @@ from utak.simulator.episode.episode import EpisodeLine, encode
 # What certificates take for granted besides claims of the task (docs/certificates.md), in words.
 GRANTED = {
     "along(grid)": "the robot's axes lie along the squares",
-    "whole(squares)": "one thing, or the verge, covers all of each occupied square",
+    "whole(squares)": "where the robot woke one thing, or the verge, covers all of each occupied square",
     "isolated(things)": "no verge lies within a closed ring of squares that are floor or things",
+    "apart(things)": "where the robot woke, things whose squares share an edge or are the same are one thing",
 }
 CaseLine = Sequence[Any]  # of the cases of a certificate
 

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from utak.kb.evidence.reason import ReasonKind
+from utak.simulator.certificates.checker import ALONG_GRID, OF_THINGS, OF_WALLS
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
+from utak.simulator.explaining.certified import GRANTED
 from utak.simulator.explaining.questions import questions_of_episode
 from utak.simulator.explaining.trees import TREE_LEVELS, trees_of_episode
 
@@ -84,3 +86,7 @@ def test_commands_and_pages_tell_it(
     while level:
         depth, level = depth + 1, [child for one in level for child in one.get("children", [])]
     assert depth == TREE_LEVELS
+
+
+def test_all_that_certificates_take_for_granted_besides_the_task_has_words() -> None:
+    assert set(GRANTED) == {ALONG_GRID, *OF_WALLS, *OF_THINGS}
