@@ -219,6 +219,10 @@ PLAN_SUBJECT_ARGUMENT = ArgumentType("what a step settles", NAME_ARGUMENT.check)
 SETTLING_STEPS = {  # with what each does, in words; {} is what it settles
     "find": "what {} is about is looked for",
     "pursue": "the robot sees how {} can hold",
+    "recheck": "the passage that is too narrow is looked at again from close by, for {}",
+    "measure": "the object is pushed by parts of a square to know its size, for {}",
+    "probe": "the object is pushed where the passage may be wide enough, for {}",
+    "gauge": "the robot walks against the sides of the passage to know its width, for {}",
     "pull": "a thing that may go on in a wall is drawn out of it, for {}",
     "make_way": "what blocks the robot's way is moved aside, for {}",
     "try": "things that may be several are felt all round, and pushed each way where they did not move, for {}",
@@ -231,7 +235,12 @@ AGENDA_STEPS = {
     "recover": "what is held is put down, for the robot does not know where it is",
 }
 SETTLING_WORDS = {**SETTLING_STEPS, **AGENDA_STEPS}
-RESUMED_STEPS = ("make_way", "try", "feel")  # those that are gone on with in later decisions, before anything else
+RESUMED_STEPS = (
+    "make_way",
+    "try",
+    "feel",
+    "gauge",
+)  # those that are gone on with in later decisions, before anything else
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),

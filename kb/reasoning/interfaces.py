@@ -253,7 +253,10 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("horizon", 1): (AMOUNT_ARGUMENT,),
         ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
-        **{(name, 1): (GOAL_ARGUMENT,) for name in ("goal", "missing", "unclear", "waits", "met", "unmet")},
+        **{
+            (name, 1): (GOAL_ARGUMENT,)
+            for name in ("goal", "missing", "unclear", "waits", "infeasible", "narrow", "met", "unmet")
+        },
         **{(name, 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT) for name in ("wish", "missed")},
         ("fulfils", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT),
         ("rank", 2): (MOVER_ARGUMENT, AMOUNT_ARGUMENT),
@@ -353,7 +356,7 @@ PLAN_FACTS = frozenset(
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
-        "default_price", "acts", "waits", "holds", "left", "shaken", "settling", "settled",
+        "default_price", "acts", "waits", "infeasible", "narrow", "holds", "left", "shaken", "settling", "settled",
     ]
 )  # fmt: skip
 # Predicates of the choice among activities. Rules forbid activities, and price them.

@@ -52,12 +52,16 @@ class Activities:
         """Make activities of which none was begun."""
         where = PerModel(destination)
         self._transporter, self._clearer, trials = Transporter(), ObstacleClearer(), Trials()
-        clearer = self._clearer
+        clearer, checks = self._clearer, self._transporter.checks
         # By the name of a step that settles something: its next command, or what it came to. These are methods, not
         # lambdas: when a mind is copied (planner/cycle.py), a method goes with its object, a lambda keeps the old one.
         self._settling: Mapping[str, Callable[[Sequence[Fact], StageTurn], Decision]] = {
             "find": self._towards_first,
             "pursue": self._towards_first,
+            "recheck": checks.recheck,
+            "measure": checks.measure,
+            "probe": checks.probe,
+            "gauge": checks.gauge,
             "pull": clearer.pull,
             "make_way": clearer.clear,
             "try": trials.next,
@@ -69,6 +73,7 @@ class Activities:
             "feel": (clearer.is_feeling, clearer.feel_on),
             "make_way": (clearer.is_moving, clearer.clear_on),
             "try": (trials.is_pushing, trials.go_on),
+            "gauge": (checks.is_at_wall, checks.step_back),
         }
         if (set(self._settling), set(self._resumed)) != (set(SETTLING_STEPS), set(RESUMED_STEPS)):
             raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
@@ -98,6 +103,7 @@ class Activities:
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up."""
         self._own.note(turn)
+        self._transporter.checks.begin(turn)
         holds = self.holds(turn.situation)
         self._undid |= {undone for undone in self._held if not holds(undone[1])}
         about = tuple(f"{name}: {goal}" for name, goal in turn.goals.items())
@@ -125,7 +131,7 @@ class Activities:
 
     def _learns(self, activity: Activity, agenda: Agenda, last: Decision, turn: StageTurn) -> bool:
         """Return whether an activity does nothing but ask for facts, after these were noted on the agenda."""
-        if activity.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
+        if activity.kind == "settle" and (step := self.errands.settle(turn, self._open(turn, agenda))):
             agenda.learn([f"planned({step})"])
         elif activity.kind == "doubt":
             scope = ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(turn)
@@ -137,6 +143,10 @@ class Activities:
         else:
             return False
         return True
+
+    def _open(self, turn: StageTurn, agenda: Agenda) -> list[str]:
+        """Return what is open, as facts for the task plan."""
+        return [*_unknown(turn), *agenda.results, *self._transporter.checks.facts(turn)]
 
     @property
     def stated(self) -> TaskPlan:

@@ -4,14 +4,14 @@ planner.carrying.plan_executor says what to do with the object. Here it is settl
 infeasibility certificate proves.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from utak.geometry.kernels.arrays import XY, Bools
-from utak.geometry.manipulation.goals import At, End, Inside
+from utak.geometry.manipulation.goals import Inside
 from utak.kb.body import Grasp, Move, Push, Release, Turn
 from utak.kb.language.terms import Fact
 from utak.kb.task.binding import rules_on_what_fits, rules_that_deny
@@ -22,7 +22,7 @@ from utak.planner.carrying.open_facts import proof_if_not_found
 from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
-from utak.planner.deciding.trials import measure_gaps, step_back
+from utak.planner.deciding.trials import RefusalChecks, Refusal
 from utak.planner.deciding.verification import looks_before_grasp, looks_for_more
 from utak.planner.decision import Decision, TaskVerdict, command_or_nothing, done, impossible, nothing_to_do
 from utak.planner.goals.corner_goal import approach_for_goals
@@ -35,15 +35,10 @@ from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.per_model import PerModel
 from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.situation import Situation
-from utak.planner.skills.measure_gap import GapMeasurer
-from utak.planner.skills.measure_size import SizeEstimator, least_outline
 from utak.planner.skills.press import Presser
-from utak.planner.skills.try_passage import PassageTrials
 from utak.planner.stages import Stage
 from utak.planner.subgoal_kind import SubgoalKind
 
-SHARE_TARGET = "share"  # the ends of pushes that give each side of a passage its share of what is missing
-SIZE_TARGET = "size"  # the end of a push whose only purpose is to measure an object
 MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looked at first; tuned on random worlds
 
 
@@ -55,8 +50,7 @@ class Transporter:
         self.place: Callable[[Fact, Node, XY, Situation], Placement] = PerModel(goal_placement)
         self.search: Callable[..., Sequence[Subgoal]] = subgoals_towards
         self._origins = Origins()
-        self._size_estimator = SizeEstimator()
-        self._presser, self._passages, self._gaps = Presser(), PassageTrials(), GapMeasurer()
+        self._presser, self.checks = Presser(), RefusalChecks()
         # How many squares had been looked from when the robot went to see where an object must end, until one is added.
         self._looked_before = 0
         self._is_measuring = False  # whether the last command was to measure what a parameter may mean
@@ -68,9 +62,6 @@ class Transporter:
 
     def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
-        self._gaps.note(len(turn.track), turn.situation.model)
-        if self._gaps.is_at_wall(len(turn.track)):  # nothing comes between: a look from there would tell another place
-            return step_back(self._gaps, turn)
         node = turn.situation.object_of(str(goal.args[0]))
         if node is None:
             return self._freed(self._find(goal, turn), goal, turn)
@@ -127,13 +118,14 @@ class Transporter:
             subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
             return turn.seek([subgoal], along=along)
         # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
-        begun = self._passages.begun(node, turn.situation.model)
-        if begun and (trial := self._try_passage(advice, node, land.must_reach.ends() or land.ends, turn)):
-            return trial
+        if self.checks.is_probing(node, turn):
+            refusal = Refusal(node, land.must_reach.ends() or land.ends, advice)
+            if probe := self.checks.probed(refusal, turn):
+                return probe
         unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
         subgoals = self.search([unknown], turn.situation, turn.reconciled)
         decision = self._look_for_way(advice, node, land, subgoals, turn)
-        return self._check_proof(advice, decision, node, land, turn)
+        return self._check_proof(Refusal(node, land.ends, advice), decision, goal, land, turn)
 
     def may_bring(self, goal: Fact, turn: StageTurn, supposed: Situation) -> bool:
         """Return whether the object of a goal may be brought in another situation to where the goal holds now."""
@@ -191,7 +183,7 @@ class Transporter:
         if decision.verdict not in (None, TaskVerdict.DONE) or goes_on:
             like = [name for parameter, name in turn.reconciled.measurable if parameter in parameters]
             seen = (thing for thing in turn.situation.model.objects if thing.name in like)
-            push = next(filter(None, (self._measure(thing, turn) for thing in seen)), push)
+            push = next(filter(None, (self.checks.push_to_measure(thing, turn) for thing in seen)), push)
         self._is_measuring = bool(push)
         return push or decision
 
@@ -232,48 +224,18 @@ class Transporter:
         return decision
 
     def _check_proof(
-        self,
-        refused: Infeasibility,
-        decision: Decision,
-        node: Node,
-        land: Placement,
-        turn: StageTurn,
+        self, refusal: Refusal, decision: Decision, goal: Fact, land: Placement, turn: StageTurn
     ) -> Decision:
-        """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check."""
-        must_reach = land.must_reach.ends() if decision.verdict else {}
-        if must_reach:
-            shut_off = turn.executor.infeasibility(node, must_reach, turn.situation)
+        """Return a decision whose verdict is `impossible` only where that is proved, and note what proves it."""
+        if decision.verdict and (must_reach := land.must_reach.ends()):
+            refusal = refusal._replace(ends=must_reach)
+            shut_off = turn.executor.infeasibility(refusal.node, must_reach, turn.situation)
             if shut_off is not None and shut_off.proved:
                 why = f"{turn.stage} cannot be attained: {shut_off.reason()}"
-                refused, decision = shut_off, impossible(why, *shut_off.proof())
+                refusal, decision = refusal._replace(refused=shut_off), impossible(why, *shut_off.proof())
         if decision.verdict != TaskVerdict.IMPOSSIBLE:
             return decision
-        recheck = turn.verifier.recheck_passage(refused, turn.situation)
-        if recheck:
-            return turn.seek(recheck, refused.reason, refused.proof())
-        ends, near = must_reach or land.ends, refused.neck()
-        if ends:
-            if instead := self._measure_refused(node, ends, turn):
-                return instead
-            refused, instead = measure_gaps(self._gaps, refused, node, ends, turn, self._try_passage)
-            if instead:
-                return instead
-        return replace(decision, unless=refused.unless(), near=near)
-
-    def _try_passage(self, refused: Infeasibility, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision:
-        """Return the next command of a trial of a passage that may be wide enough; nothing where there is none."""
-        untried = nothing_to_do(f"no passage that may be wide enough for {node.name} is left to try")
-        if refused.refutation is None or not refused.unless() or not ends:
-            return untried
-        closest, why = refused.refutation.closest, f"the passage for {node.name} may be wider than it seems"
-        assert closest.passage is not None
-        while trial := self._passages.next(node, closest.passage, closest.missing, turn.situation.model):
-            if trial.aside:
-                poses = {f"{SHARE_TARGET}{n}": At(pose) for n, pose in enumerate(trial.aside)}
-                return _begun(turn.executor.advise(node, poses, turn.situation), why, turn)
-            if begun := _begun(turn.executor.try_through(node, ends, trial.opened, turn.situation), why, turn):
-                return begun
-        return untried
+        return self.checks.noted(goal, refusal, decision)
 
     def _advice(self, node: Node, land: Placement, turn: StageTurn) -> Advice:
         """Return what to do to carry an object to where its goal holds; while that is not known, to near it."""
@@ -323,32 +285,6 @@ class Transporter:
             return nothing_to_do(f"no push leads {node.name} out")
         self._presser.forget()
         return turn.act(out)
-
-    def _measure_refused(self, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision:
-        """Return the next command to measure an object that seems too large for all ends; nothing when it surely is."""
-        if push := self._measure(node, turn):
-            return push
-        least = least_outline(node)
-        refused = least and turn.executor.infeasibility(replace(node, polygon=least), ends, turn.situation)
-        if refused and refused.proved:
-            return nothing_to_do(f"{node.name} is too large in any case")
-        why = f"it cannot be told whether {turn.stage} can be attained: the size of {node.name} is not known well"
-        return Decision(None, why, TaskVerdict.LIMIT)
-
-    def _measure(self, node: Node, turn: StageTurn) -> Decision:
-        """Return the next command to push an object by a part of a square, to measure it; nothing when that is done."""
-        for pose in self._size_estimator.poses(node):
-            why = f"the size of {node.name} is not sure, so it is measured"
-            if begun := _begun(turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation), why, turn):
-                return begun
-        return nothing_to_do(f"no push tells more of the size of {node.name}")
-
-
-def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision:
-    """Return the next command of some advice, for a push with a reason of its own; nothing where there is none."""
-    if isinstance(advice, Act):
-        return turn.act(advice, why)
-    return turn.prepare(advice)
 
 
 def _look_at(node: Node, turn: StageTurn) -> Decision:

@@ -1,10 +1,12 @@
 """Trials: what seems one thing may be several that touch, and what did not move one way may move another way.
 
-A passage may be wider than it seems: the robot walks against its sides.
+Checks: whether geometry is right in what it refuses. A passage may be wider than it seems, an object smaller.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,11 +16,13 @@ from utak.geometry.motion.se2 import Pose
 from utak.kb.language.terms import Fact
 from utak.kb.objects.movability import square_ways
 from utak.kb.world.model import Node
+from utak.planner.advice import Act
 from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.bringing import ASIDE_TARGET, another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope, walls_to_feel
 from utak.planner.deciding.stage_turn import StageTurn
-from utak.planner.decision import Decision, nothing_to_do
+from utak.planner.decision import Decision, TaskVerdict, impossible, nothing_to_do
 from utak.planner.goals.placement import NEGLIGIBLE_LENGTH, end_away_from, lies_clear_of
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.moves import move_to
@@ -26,9 +30,12 @@ from utak.planner.screen.projection import dilate
 from utak.planner.sights.things import things_in_question, unfelt_rims
 from utak.planner.situation import Situation
 from utak.planner.skills.measure_gap import GapMeasurer, PassageRow
-from utak.planner.skills.measure_size import least_outline
+from utak.planner.skills.measure_size import SizeEstimator, least_outline
+from utak.planner.skills.try_passage import PassageTrials
 from utak.planner.subgoal_kind import SubgoalKind
 
+SHARE_TARGET = "share"  # the ends of pushes that give each side of a passage its share of what is missing
+SIZE_TARGET = "size"  # the end of a push whose only purpose is to measure an object
 ROOM_BEFORE = 2  # squares about a passage that are cleared for the robot to come into it; a convention
 GAP_REASON = "how wide a passage is shows where its walls stop the robot"
 
@@ -71,58 +78,147 @@ class Trials:
         return nothing_to_do("no thing is left to try")
 
 
-def measure_gaps(
-    gaps: GapMeasurer,
-    refused: Infeasibility,
-    node: Node,
-    ends: Mapping[str, End],
-    turn: StageTurn,
-    try_passage: Callable[[Infeasibility, Node, Mapping[str, End], StageTurn], Decision],
-) -> tuple[Infeasibility, Decision]:
-    """Return a refusal that counts with passages measured too narrow, and the next command to try or measure one."""
-    # An object is pushed against a passage before that is measured: in the squares of a wall the robot's place is less
-    # sure, and then pushes by parts of a square are.
-    situation, outline = turn.situation, least_outline(node)
-    model, least = situation.model, least_gap(outline)
-    stays = outline.area if outline.minimum_rotated_rectangle.area - outline.area < NEGLIGIBLE_LENGTH**2 else 0.0
-    shut = np.zeros_like(model.space)
-    while refused.unless():
-        if trial := try_passage(refused, node, ends, turn):
-            return refused, trial
-        gap = gaps.gap_of(refused.passage, model)
-        width = math.inf if gap is None else gap.width / math.cos(model.spread)
-        if gap is None or width >= least:
-            break
-        exact = gaps.is_exact(gap)
-        if exact is None:
-            return refused, _measure(gap, gaps, node, turn)
-        # No more of a rectangle comes through a gap that is narrower than it than a corner whose longest side it is.
-        shut, stays = shut | model.squares(gap.squares), stays - width**2 / 4
-        if not exact or not lies_clear_of(shut, stays, node, ends, situation):
-            break
-        again = turn.executor.infeasibility(node, ends, situation.with_too_narrow(node.name, shut))
-        if again is None or not again.proved:
-            break
-        refused = again
-    return refused, nothing_to_do("no passage is left to measure")
+class Refusal(NamedTuple):
+    """The answer of geometry that an object cannot be brought to any of several ends."""
+
+    node: Node
+    ends: Mapping[str, End]  # by name, in squares, view frame; {} where none is known
+    refused: Infeasibility
 
 
-def step_back(gaps: GapMeasurer, turn: StageTurn) -> Decision:
-    """Return the move of a robot that has walked against a side of a gap a little back from it."""
-    model = turn.situation.model
-    return Decision(move_to(gaps.step_back(len(turn.track), model), model), f"{GAP_REASON}; {turn.stage}")
+class RefusalChecks:
+    """Seeks what settles whether geometry is right in what it refuses, and remembers what was tried and measured."""
+
+    def __init__(self) -> None:
+        """Make one that sought nothing."""
+        self._refusals: dict[Fact, Refusal] = {}  # by the goals for objects, in the present decision
+        self._sizes, self._passages, self._gaps = SizeEstimator(), PassageTrials(), GapMeasurer()
+
+    def begin(self, turn: StageTurn) -> None:
+        """Begin a decision, and note what the newest walk against a side of a passage showed."""
+        self._refusals = {}
+        self._gaps.note(len(turn.track), turn.situation.model)
+
+    def noted(self, goal: Fact, refusal: Refusal, decision: Decision) -> Decision:
+        """Note why a goal is refused; return the decision that says so, with what would overturn it."""
+        self._refusals[goal] = refusal
+        return replace(decision, unless=refusal.refused.unless(), near=refusal.refused.neck())
+
+    def facts(self, turn: StageTurn) -> Iterator[str]:
+        """Yield which goals for objects are refused, and which of them for a passage that may be wider, as facts."""
+        for name, goal in turn.goals.items():
+            refusal = self._refusals.get(goal)
+            if refusal is not None:
+                yield f"infeasible({name})"
+                if refusal.refused.unless():
+                    yield f"narrow({name})"
+
+    def is_at_wall(self, situation: Situation) -> bool:
+        """Return whether the robot has just walked against a side of a passage: nothing comes before the step back."""
+        return self._gaps.is_at_wall(len(situation.track))
+
+    def step_back(self, turn: StageTurn) -> Decision:
+        """Return the move of a robot that has walked against a side of a passage a little back from it."""
+        model = turn.situation.model
+        return Decision(move_to(self._gaps.step_back(len(turn.track), model), model), f"{GAP_REASON}; {turn.stage}")
+
+    def is_probing(self, node: Node, turn: StageTurn) -> bool:
+        """Return whether the robot holds an object with which it has begun to probe a passage."""
+        return self._passages.begun(node, turn.situation.model)
+
+    def recheck(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command to look again from close by at the passage for which a goal is refused."""
+        refused = self._refusals[goals[0]].refused
+        return turn.look_if_reached(turn.verifier.recheck_passage(refused, turn.situation))
+
+    def measure(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command to measure the object of a goal; `limit` where it may be smaller than it seems."""
+        node, ends, _ = self._refusals[goals[0]]
+        if push := self.push_to_measure(node, turn):
+            return push
+        least = least_outline(node)
+        refused = least and ends and turn.executor.infeasibility(replace(node, polygon=least), ends, turn.situation)
+        if not ends or (refused and refused.proved):
+            return nothing_to_do(f"{node.name} is too large in any case")
+        why = f"it cannot be told whether {turn.stage} can be attained: the size of {node.name} is not known well"
+        return Decision(None, why, TaskVerdict.LIMIT)
+
+    def push_to_measure(self, node: Node, turn: StageTurn) -> Decision:
+        """Return the next command to push an object by a part of a square, to measure it; nothing when that is done."""
+        for pose in self._sizes.poses(node):
+            why = f"the size of {node.name} is not sure, so it is measured"
+            if begun := _begun(turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation), why, turn):
+                return begun
+        return nothing_to_do(f"no push tells more of the size of {node.name}")
+
+    def probe(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command to push the object of a goal where a passage may be wide enough."""
+        return self.probed(self._refusals[goals[0]], turn)
+
+    def probed(self, refusal: Refusal, turn: StageTurn) -> Decision:
+        """Return the next command to push an object where a passage may be wide enough; nothing for no such place."""
+        node, ends, refused = refusal
+        if refused.refutation is None or not refused.unless() or not ends:
+            return nothing_to_do(f"no passage may be wide enough for {node.name}")
+        closest, why = refused.refutation.closest, f"the passage for {node.name} may be wider than it seems"
+        assert closest.passage is not None
+        while trial := self._passages.next(node, closest.passage, closest.missing, turn.situation.model):
+            if trial.aside:
+                poses = {f"{SHARE_TARGET}{n}": At(pose) for n, pose in enumerate(trial.aside)}
+                return _begun(turn.executor.advise(node, poses, turn.situation), why, turn)
+            if begun := _begun(turn.executor.try_through(node, ends, trial.opened, turn.situation), why, turn):
+                return begun
+        return nothing_to_do(f"the passage for {node.name} was probed")
+
+    def gauge(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command to walk against the sides of a passage; `impossible` where other passages count."""
+        # Nothing where no passage can be measured, or its measure says nothing more.
+        (goal,), refusal = goals, self._refusals[goals[0]]
+        node, ends, first = refusal
+        situation, outline = turn.situation, least_outline(node)
+        model, least = situation.model, least_gap(outline)
+        stays = outline.area if outline.minimum_rotated_rectangle.area - outline.area < NEGLIGIBLE_LENGTH**2 else 0.0
+        shut = np.zeros_like(model.space)
+        while refusal.refused.unless():
+            if refusal.refused is not first and (probe := self.probed(refusal, turn)):
+                return probe
+            gap = self._gaps.gap_of(refusal.refused.passage, model)
+            width = math.inf if gap is None else gap.width / math.cos(model.spread)
+            if gap is None or width >= least:
+                break
+            exact = self._gaps.is_exact(gap)
+            if exact is None:
+                return self._walk_against(gap, node, turn)
+            # Of a rectangle no more comes through a gap that is narrower than a corner whose longest side it is.
+            shut, stays = shut | model.squares(gap.squares), stays - width**2 / 4
+            if not exact or not lies_clear_of(shut, stays, node, ends, situation):
+                break
+            again = turn.executor.infeasibility(node, ends, situation.with_too_narrow(node.name, shut))
+            if again is None or not again.proved:
+                break
+            refusal = refusal._replace(refused=again)
+        if refusal.refused is first:
+            return nothing_to_do("no passage is left to measure")
+        why = f"{turn.stage} cannot be attained: {refusal.refused.reason()}"
+        return self.noted(goal, refusal, impossible(why, *refusal.refused.proof()))
+
+    def _walk_against(self, gap: PassageRow, node: Node, turn: StageTurn) -> Decision:
+        """Return the next command to measure a gap, or to bring away what stands before it; nothing for no way."""
+        model = turn.situation.model
+        end = self._gaps.end_of_walk(gap, len(turn.track), model) if model.held is None else None
+        if end is not None:
+            return Decision(move_to(end, model), f"{GAP_REASON}; {turn.stage}")
+        squares = model.squares(gap.squares)
+        there = turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, np.flatnonzero(squares), GAP_REASON)])
+        near = dilate(squares, ROOM_BEFORE)
+        if there or not (near & model.mask(node.patch)).any():
+            return there
+        away = end_away_from(near, node, turn.situation)
+        return bring_to_end(node, {ASIDE_TARGET: away}, turn, f"{GAP_REASON}, and {node.name} stands before it: ")
 
 
-def _measure(gap: PassageRow, gaps: GapMeasurer, node: Node, turn: StageTurn) -> Decision:
-    """Return the next command to measure a gap, or to bring away what stands before it; nothing for no way there."""
-    model = turn.situation.model
-    end = gaps.end_of_walk(gap, len(turn.track), model) if model.held is None else None
-    if end is not None:
-        return Decision(move_to(end, model), f"{GAP_REASON}; {turn.stage}")
-    squares = model.squares(gap.squares)
-    there = turn.look_if_reached([Subgoal(SubgoalKind.ATTAIN, np.flatnonzero(squares), GAP_REASON)])
-    near = dilate(squares, ROOM_BEFORE)
-    if there or not (near & model.mask(node.patch)).any():
-        return there
-    away = end_away_from(near, node, turn.situation)
-    return bring_to_end(node, {ASIDE_TARGET: away}, turn, f"{GAP_REASON}, and {node.name} stands before it: ")
+def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision:
+    """Return the next command of some advice, for a push with a reason of its own; nothing where there is none."""
+    if isinstance(advice, Act):
+        return turn.act(advice, why)
+    return turn.prepare(advice)
