@@ -9,6 +9,7 @@ from utak.geometry.kernels.arrays import XY
 from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.body import Command, Push, Turn
 from utak.kb.world.model import WorldModel
+from utak.planner.decision import RobotStep
 from utak.planner.screen.projection import SquareIndices
 from utak.planner.sights.frontiers import Viewpoint
 
@@ -22,7 +23,7 @@ class Act:
     # The same push in squares, map frame, when no plan asks for it; None for commands of a plan. The plan executor must
     # be told when such a command is given (PlanExecutor.depart).
     unplanned_push: Translate | None = None
-    steps: tuple[str, ...] = ()  # the steps of the robot that it begins (planner.steps); () for its own alone
+    steps: tuple[RobotStep, ...] = ()  # the steps of the robot that it begins (planner.steps); () for its own alone
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Go:
     square: SquareIndices  # one flat index (row * columns + column) into the view's arrays, (1,)
     place: XY  # the point (x, y) at which to halt, in squares, map frame
     why: str  # the reason, in words
-    steps: tuple[str, ...] = ()  # the steps of the robot, that to the square first; () for that one alone
+    steps: tuple[RobotStep, ...] = ()  # the steps of the robot, that to the square first; () for that one alone
 
 
 @dataclass(frozen=True)

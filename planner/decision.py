@@ -17,6 +17,17 @@ class TaskVerdict(StrEnum):
     LIMIT = "limit"  # the robot gave up, and nothing is proved
 
 
+class RobotStep(NamedTuple):
+    """A step of the robot itself, as kb/asp/belief.lp declares step/2."""
+
+    name: str
+    args: tuple[str | int, ...]  # lengths in hundredths of squares
+
+    def __str__(self) -> str:
+        """Return the step as the facts write it."""
+        return f"{self.name}({','.join(map(str, self.args))})"
+
+
 class StepReport(NamedTuple):
     """One turn of the cycle."""
 
@@ -48,7 +59,7 @@ class Decision:
     # = row); None for no such place
     near: tuple[float, float] | None = None
     # The steps of the robot with which the plan goes on, the command's own first (planner.steps); () for that one alone
-    steps: tuple[str, ...] = ()
+    steps: tuple[RobotStep, ...] = ()
     # What was given to planner/asp/deciding for it; None where it was not chosen among subgoals or ways
     question: Question | None = None
     # What proves the verdict `impossible`, in words, a clause each; that verdict is never given without

@@ -13,7 +13,7 @@ from utak.geometry.motion.se2 import Motion, Rotate
 from utak.kb.body import Command, Grasp, Move, Push, Turn
 from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.world.model import WorldModel, hundredths
-from utak.planner.decision import Decision
+from utak.planner.decision import Decision, RobotStep
 from utak.planner.question import Atoms, Question
 from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
@@ -22,53 +22,53 @@ from utak.planner.subgoal_kind import SubgoalKind
 STEP_PREDICATES = (("offered", 2), ("step", 2), ("begun", 0), ("in_hand", 2), ("there", 3), ("holds", 1))
 
 
-def step_of_command(command: Command, model: WorldModel) -> str:
+def step_of_command(command: Command, model: WorldModel) -> RobotStep:
     """Return the step of a command alone, for what is in hand."""
     if model.held is None and not isinstance(command, Move | Grasp):  # an empty hand does nothing: the robot stays
         return go_to(model.place, model)
     match command:
         case Move(east, north):
             x, y = model.frame.place_to_utak(*model.place)
-            return _term("go", hundredths(x + east), hundredths(y + north))
+            return _step("go", hundredths(x + east), hundredths(y + north))
         case Push(east, north):
-            return _term("push", model.held, hundredths(east), hundredths(north))
+            return _step("push", str(model.held), hundredths(east), hundredths(north))
         case Turn(degrees):
-            return _term("turn", model.held, hundredths(degrees))
+            return _step("turn", str(model.held), hundredths(degrees))
         case Grasp(direction):
             raise ValueError(f"what is grasped to the {direction} is known to who decides it only")
     return release(str(model.held))
 
 
-def steps_of(decision: Decision, model: WorldModel) -> tuple[str, ...]:
+def steps_of(decision: Decision, model: WorldModel) -> tuple[RobotStep, ...]:
     """Return the steps with which a decision goes on, that of its command first; () where it has no command."""
     return decision.steps or (() if decision.command is None else (step_of_command(decision.command, model),))
 
 
-def release(thing: str) -> str:
+def release(thing: str) -> RobotStep:
     """Return the step that a thing is let go."""
-    return _term("release", thing)
+    return _step("release", thing)
 
 
-def grasp(thing: str, direction: str) -> str:
+def grasp(thing: str, direction: str) -> RobotStep:
     """Return the step that a thing is grasped which lies in a direction."""
-    return _term("grasp", thing, direction)
+    return _step("grasp", thing, direction)
 
 
-def motion_of(thing: str, motion: Motion, model: WorldModel) -> str:
+def motion_of(thing: str, motion: Motion, model: WorldModel) -> RobotStep:
     """Return the step of a motion, map frame, with a thing in hand."""
     if isinstance(motion, Rotate):
-        return _term("turn", thing, hundredths(motion.degrees))
-    return _term("push", thing, *map(hundredths, model.frame.to_utak(motion.dx, motion.dy)))
+        return _step("turn", thing, hundredths(motion.degrees))
+    return _step("push", thing, *map(hundredths, model.frame.to_utak(motion.dx, motion.dy)))
 
 
-def go_to(place: XY, model: WorldModel) -> str:
+def go_to(place: XY, model: WorldModel) -> RobotStep:
     """Return the step to a point (x, y) in squares, map frame."""
-    return _term("go", *map(hundredths, model.frame.place_to_utak(*place)))
+    return _step("go", *map(hundredths, model.frame.place_to_utak(*place)))
 
 
-def of_legs(thing: str, legs: Sequence[Leg], grasped: bool, model: WorldModel) -> tuple[str, ...]:
+def of_legs(thing: str, legs: Sequence[Leg], grasped: bool, model: WorldModel) -> tuple[RobotStep, ...]:
     """Return the steps of some legs, map frame, with a thing, which may be grasped already for the first one."""
-    steps: list[str] = []
+    steps: list[RobotStep] = []
     for number, leg in enumerate(legs):
         if number or not grasped:
             direction = model.frame.directions().get(leg.direction_square, ANY_SIDE)
@@ -77,11 +77,11 @@ def of_legs(thing: str, legs: Sequence[Leg], grasped: bool, model: WorldModel) -
     return tuple(steps)
 
 
-def towards(kind: str, place: XY, model: WorldModel) -> tuple[str, ...]:
+def towards(kind: str, place: XY, model: WorldModel) -> tuple[RobotStep, ...]:
     """Return the steps towards a subgoal of a kind at a point (x, y) in squares, map frame."""
     there = tuple(map(hundredths, model.frame.place_to_utak(*place)))
-    then = () if kind == SubgoalKind.ATTAIN else (_term("feel" if kind == SubgoalKind.FEEL else "look", *there),)
-    return (_term("go", *there), *then)
+    then = () if kind == SubgoalKind.ATTAIN else (_step("feel" if kind == SubgoalKind.FEEL else "look", *there),)
+    return (_step("go", *there), *then)
 
 
 def are_ruled(situation: Situation) -> bool:
@@ -89,7 +89,9 @@ def are_ruled(situation: Situation) -> bool:
     return situation.question.speaks_of(STEP_PREDICATES)
 
 
-def refusal(steps: Sequence[str], situation: Situation, question: Question | None = None, last: bool = False) -> str:
+def refusal(
+    steps: Sequence[RobotStep], situation: Situation, question: Question | None = None, last: bool = False
+) -> str:
     """Return why some steps, first the next one, may not be done, in words; "" where they may."""
     # question : where what was chosen before has one of its own. last : whether the answer is to be recorded.
     held = situation.model.held
@@ -100,8 +102,8 @@ def refusal(steps: Sequence[str], situation: Situation, question: Question | Non
         return ""
     blamed = given.blamed(lambda atoms: not _are_begun(atoms))
     if not blamed:
-        return f"{', '.join(steps)} cannot be done one after the other"
-    return forbidden_by(blamed, ", ".join(steps))
+        return f"{', '.join(map(str, steps))} cannot be done one after the other"
+    return forbidden_by(blamed, ", ".join(map(str, steps)))
 
 
 def forbidden_by(rules: Sequence[str], what: str) -> str:
@@ -118,6 +120,6 @@ def _are_begun(answer: Atoms) -> bool:
     return any(atom.name == "begun" for atom in answer)
 
 
-def _term(name: str, *arguments: object) -> str:
-    """Return a step as the facts write it."""
-    return f"{name}({','.join(map(str, arguments))})"
+def _step(name: str, *args: str | int) -> RobotStep:
+    """Return a step with its arguments."""
+    return RobotStep(name, args)

@@ -187,7 +187,7 @@ class Activities:
             name = f"g{len(turn.goals) + 1}"
             goals = [PlacedGoal(name, " and ".join(map(str, turn.stage.own)), ROBOT, False)]
             # The last step towards what is only looked at is the look.
-            unmet = [] if decision.steps and decision.steps[-1].startswith("go(") else [name]
+            unmet = [] if decision.steps and decision.steps[-1].name == "go" else [name]
         bare = TaskPlan((errand,), tuple(unmet), goals=tuple(goals))
         if activity.kind in self._resumed:
             self._begun[activity.kind] = bare
@@ -314,7 +314,7 @@ class Activities:
 
 def _under_way(decision: Decision, name: str, turn: StageTurn) -> RemainingPlan | None:
     """Return what is left of the plan with an object that a decision goes on with; None where it moves it by none."""
-    moves = any(step.startswith((f"push({name},", f"turn({name},")) for step in decision.steps)
+    moves = any(step.name in ("push", "turn") and step.args[0] == name for step in decision.steps)
     return turn.executor.plan_of(name) if moves else None
 
 

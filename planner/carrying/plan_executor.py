@@ -46,7 +46,6 @@ from utak.planner.steps import grasp, release
 # Unexpected contacts of an object after which it is grasped from elsewhere: where it is known exactly, and where it is
 # not, as after a slip. Tuned on random worlds (benchmarks.campaign).
 MAX_CONTACTS, MAX_CONTACTS_INEXACT = 2, 4
-MAX_PLANS = 40  # plans in one task; a bound on time
 NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than rounding; a convention
 VIEWPOINT_TARGET = "viewpoint"  # the end of a plan that brings an object near to where the robot wants to look
 # Squares by which an object is tried another way, if there is room: as wide as the widest field of the retina, so that
@@ -79,7 +78,6 @@ class PlanExecutor:
         self._asked = ""  # the object for which the plan under way was made: the one it carries, or whose way it clears
         self._viewpoint_plan: RemainingPlan | None = None  # to bring an object near to where the robot wants to look
         self._operations = operations or PlanOperations()
-        self._plans = 0  # how many were made
         self._contacts: dict[str, int] = {}  # how often an object stood against something unexpectedly
         self._pushed: Translate | None = None  # the last motion with a held object, if a push, and not a retreat
         self._is_anew = False  # whether the held object was grasped since a plan moved it last
@@ -136,9 +134,8 @@ class PlanExecutor:
         """Return what to do to carry an object to one of several ends as if some squares of wall were free."""
         request = self._request(node, ends, "", situation.model)
         found = self._oracle.through(request, opened, situation)
-        if found is None or self._plans >= MAX_PLANS:
+        if found is None:
             return Infeasibility(False, "no plan leads through")
-        self._plans += 1
         return self._next_step(self._operations.begin_plan(found, node, situation.model), ends, situation)
 
     def infeasibility(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
@@ -168,7 +165,7 @@ class PlanExecutor:
     def take_along(self, node: Node, squares: SquareIndices, fetch: bool, situation: Situation) -> Advice:
         """Return what takes an object along to where the robot wants to look, unless it had better walk there alone."""
         model, alone = situation.model, Infeasibility(False, f"{node.name} had better stay")
-        if node.stuck or self._plans >= MAX_PLANS or model.held not in (None, node.name):
+        if node.stuck or model.held not in (None, node.name):
             return alone
         push = shortest_push(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
@@ -183,7 +180,7 @@ class PlanExecutor:
         # object in hand.
         none = Infeasibility(False, "no push halts where it is seen")
         plan = self.plan_of(node.name)
-        if not self.pull or node.stuck or self._plans >= MAX_PLANS or plan is None:
+        if not self.pull or node.stuck or plan is None:
             return none
         if len(plan.legs) != 1 or not plan.grasped or self._pushed is None:
             return none
@@ -195,7 +192,7 @@ class PlanExecutor:
 
     def lead_out(self, node: Node, situation: Situation) -> Advice:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed."""
-        push = escape_push(node, situation) if self.pull and self._plans < MAX_PLANS else None
+        push = escape_push(node, situation) if self.pull else None
         if push is None:
             return Infeasibility(False, "no push leads it out")
         self.failed.record(node, situation.model)
@@ -206,9 +203,9 @@ class PlanExecutor:
         return self._plan is not None and name in (self._plan.name, self._asked)
 
     def depart(self, act: Act) -> None:
-        """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan."""
+        """Note that a command is given. A push that no plan asks for ends the plan under way."""
         if act.unplanned_push is not None:
-            self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
+            self._plan, self._pushed = None, act.unplanned_push
             self._is_anew = False
 
     def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Advice:
@@ -226,7 +223,6 @@ class PlanExecutor:
             found = self._viewpoint_oracle.find(self._request(node, ends, "", situation.model), situation)
             if isinstance(found, Infeasibility) or found.level or found.aside or not found.is_simple:
                 return no_way
-            self._plans += 1
             plan = self._operations.begin_plan(found, node, situation.model)
         advice = self._next_step(plan, ends, situation)
         self._viewpoint_plan = self._plan
@@ -287,9 +283,6 @@ class PlanExecutor:
         if not found.plan.legs:
             return Infeasibility(False, f"{node.name} seems to lie there already")
         self._went_on = situation.model.place if request.held else None
-        self._plans += 1
-        if self._plans > MAX_PLANS:
-            return Infeasibility(False, f"the robot gave up after {MAX_PLANS} plans")
         return self._operations.begin_plan(found, node, situation.model)
 
     def _clear_way(

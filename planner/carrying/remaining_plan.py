@@ -21,6 +21,7 @@ from utak.kb.body import DIRECTIONS
 from utak.kb.mapping.patch import Patch
 from utak.kb.world.model import Node, WorldModel
 from utak.planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
+from utak.planner.decision import RobotStep
 from utak.planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
 from utak.planner.screen.moves import is_at
 from utak.planner.screen.projection import square_index
@@ -59,7 +60,7 @@ class RemainingPlan:
             polygon = motion.carry(polygon)
         return polygon
 
-    def steps(self, model: WorldModel) -> tuple[str, ...]:
+    def steps(self, model: WorldModel) -> tuple[RobotStep, ...]:
         """Return the steps of the robot that are left, in order."""
         return of_legs(self.name, self.legs, self.grasped, model)
 

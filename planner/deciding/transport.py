@@ -22,7 +22,7 @@ from utak.planner.carrying.open_facts import proof_if_not_found
 from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
-from utak.planner.deciding.trials import RefusalChecks, Refusal
+from utak.planner.deciding.trials import Refusal, RefusalChecks
 from utak.planner.deciding.verification import looks_before_grasp, looks_for_more
 from utak.planner.decision import Decision, TaskVerdict, command_or_nothing, done, impossible, nothing_to_do
 from utak.planner.goals.corner_goal import approach_for_goals
