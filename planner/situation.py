@@ -1,7 +1,7 @@
 """The situation: all that the meaning of a goal depends on, and what follows from it for doors and rooms."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -219,6 +219,15 @@ class Situation:
         """Return the situation with cost maps on which no way leads through a door that is shut to the robot."""
         kept_off = neck_squares((*self.shut(ROBOT), *others), self.model.labels.shape) | self.cost_maps.kept_off
         return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off)) if kept_off.any() else self
+
+    def without(self, left_out: Collection[Fact]) -> "Situation":
+        """Return the situation if the task did not have some of its constraints, and cost maps for it."""
+        goals = tuple(goal for goal in self.task.goals if goal not in left_out)
+        return replace(self, task=replace(self.task, goals=goals)).through_shut_doors().within_shut_doors()
+
+    def as_lenient(self) -> "Situation":
+        """Return the situation with forbidden regions as small as they surely are, and cost maps for it."""
+        return replace(self, lenient=True).through_shut_doors().within_shut_doors()
 
     def through_shut_doors(self) -> "Situation":
         """Return the situation with cost maps on which all doors are open."""

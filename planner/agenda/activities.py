@@ -31,6 +31,7 @@ from utak.planner.goals.robot_goals import destination
 from utak.planner.oracles.problem import PlacedGoal
 from utak.planner.per_model import PerModel
 from utak.planner.question import DECIDING_ENCODING, Question
+from utak.planner.sights.frontiers import find_frontiers
 from utak.planner.sights.walls import ALL_WALLS
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
@@ -261,9 +262,21 @@ class Activities:
 
     def _plan_exists(self, goals: Sequence[Fact], turn: StageTurn, opened: Bools) -> bool:
         """Return whether some goals may be attained if some squares, (rows, columns) bool, are free."""
-        situation, own = turn.situation.with_free(opened), turn.stage.own
+        return bool(opened.any()) and self._may_attain(goals, turn, turn.situation.with_free(opened))
+
+    def _may_attain(self, goals: Sequence[Fact], turn: StageTurn, supposed: Situation) -> bool:
+        """Return whether some goals may be attained in another situation where they hold now, as far as is known."""
+        own = turn.stage.own
         may = [(goal, self._own.may_reach if goal in own else self._transporter.may_bring) for goal in goals]
-        return bool(opened.any()) and all(attain(goal, turn, situation) for goal, attain in may)
+        return all(attain(goal, turn, supposed) for goal, attain in may)
+
+    def may_do_more(self, turn: StageTurn, supposed: StageTurn) -> bool:
+        """Return whether in another situation the goals may be attained, or more be seen, and as things are not."""
+        goals, here, there = turn.stage.goals, turn.situation, supposed.situation
+        if not self._may_attain(goals, supposed, there):
+            return False
+        sees = [bool(find_frontiers(situation.cost_maps, 0)) for situation in (here, there)]
+        return sees == [False, True] or not self._may_attain(goals, turn, here)
 
     def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""

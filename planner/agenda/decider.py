@@ -4,13 +4,11 @@ What is done for a stage is chosen by planner/asp/deciding/activities.lp (planne
 """
 
 from collections.abc import Mapping, Sequence
-from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.language.goal_words import ROBOT
-from utak.kb.language.terms import Fact
 from utak.kb.reasoning.user_rules import rules_reach
 from utak.kb.task.alternatives import alternatives, may_be
 from utak.kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
@@ -70,7 +68,6 @@ class Decider:
         self._refused: dict[frozenset[tuple[str, str]], str] = {}
         self._unmoved: frozenset[str] = frozenset()  # parameters of things that cannot be moved, and need not be
         self._turned: dict[Stage, Decision] = {}  # the verdicts of stages of which the other of two things is moved
-        self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
 
     @property
     def plan(self) -> TaskPlan:
@@ -90,14 +87,7 @@ class Decider:
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression."""
         self._activities.keeper.note(model)
-        decision = self._decided(model, track)
-        if decision.command is not None or decision.verdict == TaskVerdict.DONE:
-            return decision
-        return self._blamed_on_constraints(decision, model, track)
-
-    def _decided(self, model: WorldModel, track: Sequence[XY]) -> Decision:
-        """Return what to do after an impression, whatever constraints have to do with a verdict."""
-        kept_off = regions_kept_off(self.task, self.bound, model, ROBOT, lenient=self._lenient)
+        kept_off = regions_kept_off(self.task, self.bound, model, ROBOT)
         cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
         self.rooms = self.place_names.named(rooms_of(model, self.rules), model)
         self.corners = corners(model, self.rules)
@@ -108,7 +98,6 @@ class Decider:
         carried, renamed = keeper.middles(model), dict(keeper.renamed)
         situation = replace(
             situation,
-            lenient=self._lenient,
             as_well=as_well,
             carried=carried,
             renamed=renamed,
@@ -124,18 +113,20 @@ class Decider:
         situation = replace(situation, closed=ruled.closed, door_prices=ruled.prices, door_reliefs=ruled.reliefs)
         situation = situation.within_shut_doors()
         for stage in self.stages[self.attained :]:
-            decision = self._for_stage(self._turn(stage, situation, reconciled, track))
+            turn = self._turn(stage, situation, reconciled, track)
+            decision = self._for_stage(turn)
             meant = self._intention.meanings
             if any(self.bound.get(parameter) != name for parameter, name in meant.items()):
                 self.bound = {**self.bound, **meant}  # the plan chose what parameters mean
                 self._reconcile(cost_maps)
             if decision.verdict not in (None, TaskVerdict.DONE):
                 if self._refused_meaning(decision, stage, situation):
-                    return self._decided(model, track)  # the next thing that matches is meant, or looked for
+                    return self.decide(model, track)  # the next thing that matches is meant, or looked for
                 if self._gave_up_meaning(stage, situation):
-                    return self._decided(model, track)  # the same is tried with another thing that is meant as well
+                    return self.decide(model, track)  # the same is tried with another thing that is meant as well
                 vain = self._tried_in_vain(stage)
                 decision = replace(decision, why=f"{decision.why}; {vain}") if vain else decision
+                decision = self._blamed_on_constraints(decision, turn)
             if decision.verdict != TaskVerdict.DONE:
                 return self._activities.keeper.guarded(decision, situation)
             self.attained += 1
@@ -183,35 +174,27 @@ class Decider:
         """Return whether all goals hold as they are, so that nothing but wishes is left."""
         if not self.stages or not self.stages[-1].wishes:
             return False
-        other = deepcopy(self)
-        other.stages = (*self.stages[:-1], replace(self.stages[-1], wishes=()))
+        before = self.stages, self.attained
+        self.stages = (*self.stages[:-1], replace(self.stages[-1], wishes=()))
         with record_decisions():  # a question about the end, not a decision
-            return other.decide(model, track).verdict == TaskVerdict.DONE
+            decision = self.decide(model, track)
+        self.stages, self.attained = before
+        return decision.verdict == TaskVerdict.DONE
 
-    def _blamed_on_constraints(self, decision: Decision, model: WorldModel, track: Sequence[XY]) -> Decision:
-        """Return a verdict with the constraints that leave no way, where there would be one without them."""
-        ways = list(constraints(self.task))
-        if not ways or any(str(goal) in decision.why for goal in ways):
+    def _blamed_on_constraints(self, decision: Decision, turn: StageTurn) -> Decision:
+        """Return a verdict with the constraints that leave no way, where there may be one without them."""
+        ways, situation = list(constraints(self.task)), turn.situation
+
+        def helps(supposed: Situation) -> bool:
+            """Return whether more may be done in another situation."""
+            return self._activities.may_do_more(turn, turn.within(supposed))
+
+        if not ways or any(str(goal) in decision.why for goal in ways) or not helps(situation.without(ways)):
             return decision
-        without = self._asked(model, track, ways)
-        if without.command is None and without.verdict != TaskVerdict.DONE:
-            return without
-        alone = [goal for goal in ways if self._asked(model, track, [goal]).command is not None]
-        why = f"{decision.why}; {' and '.join(map(str, alone or ways))} leave{'s' * (len(alone or ways) == 1)} no way"
-        proof = self._asked(model, track, [], lenient=True)
-        if decision.verdict in PROOFS and proof.verdict in PROOFS:
-            return replace(decision, why=why, verdict=proof.verdict)
-        return replace(decision, why=why, verdict=TaskVerdict.LIMIT)
-
-    def _asked(
-        self, model: WorldModel, track: Sequence[XY], without: Sequence[Fact], lenient: bool = False
-    ) -> Decision:
-        """Return what would be decided without some constraints, or with regions as small as they surely are."""
-        other = deepcopy(self)
-        other.task = replace(self.task, goals=tuple(goal for goal in self.task.goals if goal not in without))
-        other._activities.keeper.task, other._lenient = other.task, lenient
-        with record_decisions():  # a question about the verdict, not a decision
-            return other._decided(model, track)
+        alone = [goal for goal in ways if helps(situation.without([goal]))] or ways
+        why = f"{decision.why}; {' and '.join(map(str, alone))} leave{'s' * (len(alone) == 1)} no way"
+        proved = decision.verdict in PROOFS and not helps(situation.as_lenient())
+        return replace(decision, why=why, verdict=decision.verdict if proved else TaskVerdict.LIMIT)
 
     def _refused_meaning(self, decision: Decision, stage: Stage, situation: Situation) -> bool:
         """Note where a verdict or users' rules leave no plan with what parameters mean; return whether that is new."""
