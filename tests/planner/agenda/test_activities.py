@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import utak
 from tests.kb.drawings import known_model
 from utak.kb.language.diagnostics import BadInputError
 from utak.kb.language.reader import facts_from_text
@@ -70,3 +71,44 @@ def test_rules_cannot_say_what_came_of_an_activity(tmp_path: Path) -> None:
 def test_rules_cannot_say_what_is_settled_in_the_task_plan(tmp_path: Path, fact: str) -> None:
     with pytest.raises(BadInputError, match="says what there is, and rules add nothing to it"):
         decided(tmp_path, f"{fact}.")
+
+
+NARROW_DOOR = "\n".join(
+    [
+        "b" * 24,
+        "b" + "." * 10 + "bb" + "." * 10 + "b",
+        "b..U" + "." * 7 + "bb" + "." * 10 + "b",
+        *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 2,
+        *["b....ggg...bb" + "." * 10 + "b"],
+        *["b....ggg" + "." * 15 + "b"],
+        *["b....ggg" + "." * 15 + "b"],
+        *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 5,
+        "b" * 24,
+    ]
+)
+
+
+def narrow_door_run(folder: Path, rules: str) -> tuple[utak.Episode, list[str]]:
+    """Return a run in which a square is wider than the only door, and the steps of its plans, each once."""
+    (folder / "mine.lp").write_text(rules)
+    scenario = utak.Scenario.from_text(
+        world=NARROW_DOOR, start="object(x). shape(x, square).", goal="in(x, room(next))."
+    )
+    episode = utak.Run(scenario, rules=[folder / "mine.lp"] if rules else []).finish()
+    facts = (fact for step in episode for fact in step.line["belief"]["facts"] if fact.startswith("plan(0,"))
+    return episode, list(dict.fromkeys(facts))
+
+
+@pytest.mark.long
+def test_what_geometry_refuses_is_checked_by_steps_of_the_plan(tmp_path: Path) -> None:
+    episode, steps = narrow_door_run(tmp_path, "")
+    assert episode.verdict == "impossible"
+    wanted = ["plan(0,measure(g1)).", "plan(0,probe(g1)).", "plan(0,gauge(g1))."]
+    assert [step for step in steps if step in wanted] == wanted
+
+
+@pytest.mark.long
+def test_a_rule_that_forbids_such_a_step_ends_in_limit_and_says_so(tmp_path: Path) -> None:
+    episode, steps = narrow_door_run(tmp_path, ":- occurs(measure(_), _). :- occurs(probe(_), _).")
+    assert episode.verdict == "limit" and "users' rules forbid measure(g1) and probe(g1)" in episode.reason
+    assert not any(name in step for step in steps for name in ("measure", "probe", "gauge"))
