@@ -86,7 +86,7 @@ def _claimed(fact: Fact, task: Task) -> Iterator[str]:
         yield f"claim({x},width,{hundredths(decimal_value(values[0]))})"
     elif not values:
         yield f"claim({x},{fact.name},verge)"
-    elif str(values[0]) in task.parameters:
+    elif fact.name not in APPEARANCES and str(values[0]) in task.parameters:  # x may be a colour, too
         yield f"related({fact.name},{x},{values[0]})"
     else:
         yield f"claim({x},{fact.name},{values[0]})"

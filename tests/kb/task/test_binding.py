@@ -109,12 +109,13 @@ def test_the_best_match_is_bound() -> None:
     assert ("x", "o1", "shape") in found.contradicted
 
 
-def test_a_colour_claim_counts() -> None:
+@pytest.mark.parametrize("parameter", ["x", "h"])  # a parameter may have the name of a colour, its own or another's
+def test_a_colour_claim_counts(parameter: str) -> None:
     things = (node("o1", {"square": 95}, "g"), node("o2", {"square": 95}, "h"))
-    claims = {"x": [("shape", "square", 100), ("colour", "h", 100)]}
+    claims = {parameter: [("shape", "square", 100), ("colour", "h", 100)]}
     found = reconcile(task(claims), replace(MODEL, objects=things), {"o1": 1, "o2": 30}, {})
-    assert found.binding == {"x": "o2"}
-    assert ("x", "o1", "colour") in found.contradicted
+    assert found.binding == {parameter: "o2"}
+    assert (parameter, "o1", "colour") in found.contradicted
 
 
 @pytest.mark.parametrize(
