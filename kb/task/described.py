@@ -14,8 +14,7 @@ from shapely.affinity import translate
 from utak.geometry.raster.components import with_edge_neighbours
 from utak.geometry.raster.runs import mask_to_polygon
 from utak.kb.language.arguments import decimal_value
-from utak.kb.language.terms import Fact
-from utak.kb.task.task import Task
+from utak.kb.task.task import APPEARANCES, Claim, Task
 from utak.kb.world.corners import Corner
 from utak.kb.world.facts import Places
 from utak.kb.world.model import Node, WorldModel, hundredths
@@ -26,7 +25,6 @@ from utak.kb.world.rooms import NO_ROOM, Rooms
 IN_WORDS = {"in": "room", "at": "corner", "against": "place", "beside": "neighbour", "joins": "room"}
 NAME_OF_THING = re.compile(r"\bo[0-9]+\b")
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
-APPEARANCES = ("shape", "colour")  # claims that kb.task.binding states of every node
 SIZE_TOLERANCE = 0.1  # the share, besides one square, by which a size may be otherwise than counted; a convention
 ROUNDING = 50  # hundredths: whoever says a width in squares means it to the nearest half of one; a convention
 BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (docs/files.md)
@@ -74,19 +72,19 @@ def claim_facts(task: Task) -> Iterator[str]:
         if name in task.described:
             yield f"described({name},{parameter.kind})"
     for claim in task.claims:
-        yield from (f"{fact[:-1]},{claim.confidence})" for fact in _claimed(claim.fact, task))
+        yield from (f"{fact[:-1]},{claim.confidence})" for fact in _claimed(claim, task))
 
 
-def _claimed(fact: Fact, task: Task) -> Iterator[str]:
+def _claimed(claim: Claim, task: Task) -> Iterator[str]:
     """Yield a claim in the words of the encoding, its confidence left out."""
-    x, *values = fact.args
+    fact, (x, *values) = claim.fact, claim.fact.args
     if fact.name == "connects":
         yield from (f"related(joins,{x},{room})" for room in values)
     elif fact.name == "width":
         yield f"claim({x},width,{hundredths(decimal_value(values[0]))})"
     elif not values:
         yield f"claim({x},{fact.name},verge)"
-    elif fact.name not in APPEARANCES and str(values[0]) in task.parameters:  # x may be a colour, too
+    elif task.parameters.keys() & claim.named[1:]:
         yield f"related({fact.name},{x},{values[0]})"
     else:
         yield f"claim({x},{fact.name},{values[0]})"

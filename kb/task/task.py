@@ -23,6 +23,7 @@ CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
 PARAMETER_KINDS = ("object", "door", "room")  # the predicates that introduce parameters
 # The shape classes that a shape class includes; everything is a polygon, too.
 SHAPE_SUBCLASSES = {"rectangle": {"square", "brick"}}
+APPEARANCES = ("shape", "colour")  # claims of what a thing looks like: kb.task.binding states them of every node
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,11 @@ class Claim:
     fact: Fact  # the claim, such as `shape(x, square)` or `connects(d, r, s)`
     confidence: int = CERTAIN_CONFIDENCE  # the user's confidence in it, percent, 0 to 100; 100 when none is given
 
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The terms of the claim that may be parameters: a colour or a shape is none, whatever its name."""
+        return tuple(map(str, self.fact.args[:1] if self.fact.name in APPEARANCES else self.fact.args))
+
 
 @dataclass(frozen=True)
 class Task:
@@ -58,7 +64,7 @@ class Task:
     @property
     def described(self) -> frozenset[str]:
         """The doors and rooms of which something is claimed; of the others nothing tells which ones they are."""
-        words = {str(term) for claim in self.claims for term in claim.fact.args}
+        words = {word for claim in self.claims for word in claim.named}
         return frozenset(x for x in words & set(self.parameters) if not self.is_object(x))
 
     @property
