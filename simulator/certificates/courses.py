@@ -5,6 +5,7 @@ Of a certificate this is what its lines rest on, and `checker` is the rest. Both
 
 import json
 from collections import Counter
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
 from itertools import accumulate, pairwise, product
@@ -12,12 +13,9 @@ from math import lcm
 from typing import Any, NamedTuple, NoReturn
 
 FIELD_ZONES = ((4, 0, 1), (8, 4, 2), (16, 8, 4))  # of the retina: reach, reach of the one within, side of fields
+ZONES = [(k, r, [*range(-reach, reach, k)]) for reach, r, k in FIELD_ZONES]  # and where fields of the zone may begin
 FIELD_OFFSETS = [  # of the retina, in order: the offset (east, north) of the south-west square, and the side
-    (east, north, side)
-    for reach, inner, side in FIELD_ZONES
-    for north in range(reach - side, -reach - 1, -side)
-    for east in range(-reach, reach, side)
-    if not (-inner <= east < inner and -inner <= north < inner)
+    (e, n, k) for k, r, ends in ZONES for n in reversed(ends) for e in ends if not (-r <= e < r and -r <= n < r)
 ]
 SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}  # the robot always fills its square
 LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
@@ -108,10 +106,8 @@ class Evidence:
         self.vectors = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
         self.parts = lcm(*(number.denominator for vector in self.vectors for number in vector))
         self.unit = 2 * PLACE_PARTS * DIRECTION_SCALE * self.parts  # a square: all lengths are whole numbers
-        self.error = self.unit // PLACE_PARTS
-        self.hindrance = [key for key in ("forked", "changes") if key in head]  # axiom 3
+        self.hindrance = [key for key in ("forked", "changes", "disturbed") if key in {*head}.union(*steps)]  # axiom 3
         self.hindrance += [key for key, usual in (("noise", 0), ("kb", [])) if head["options"][key] != usual]
-        self.hindrance += ["disturbed"] * any("disturbed" in row for row in steps)
 
     def motion(self, step: int, angle: int) -> Span:
         """Return the vector of a command, map frame."""
@@ -120,19 +116,14 @@ class Evidence:
         return x * 2 * PLACE_PARTS, y * 2 * PLACE_PARTS
 
 
-def common(one: Span, other: Span) -> Span:
-    """Return the common part of two intervals; its ends are in reverse order where there is none."""
-    return max(one[0], other[0]), min(one[1], other[1])
+def cut(interval: Span, number: int, unit: int) -> Span:
+    """Return the part of an interval within a row or column of squares; its ends are in reverse order where none is."""
+    return max(interval[0], number * unit), min(interval[1], (number + 1) * unit)
 
 
 def led(interval: Span, by: int, error: int) -> Span:
     """Return the interval through which an interval leads that is moved, longer by an error at both ends."""
     return interval[0] + min(by, 0) - error, interval[1] + max(by, 0) + error
-
-
-def side_of(number: int, unit: int) -> Span:
-    """Return the range of the coordinates of a row or column of squares."""
-    return number * unit, (number + 1) * unit
 
 
 def touched(box: Zone, unit: int) -> list[Spot]:
@@ -148,6 +139,18 @@ def sweep(box: Zone, vector: Span, unit: int) -> Spots:
     low, high = min(lane) - max(square), max(lane) - min(square)
     around = touched((led(box[0], dx, 0), led(box[1], dy, 0)), unit)
     return frozenset((i, j) for i, j in around if low < (j * dx - i * dy) * unit < high)
+
+
+def spread(squares: Spots, is_open: Callable[[Spot], bool]) -> Spots:
+    """Return some squares and all that lead to them by edges over open squares."""
+    found, edge = {*squares}, [*squares]
+    for i, j in edge:  # grows while it is gone through
+        new = {at for at in {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - found if is_open(at)}
+        edge += new
+        found |= new
+        if len(found) > MAX_SQUARES:
+            refuse("nothing bounds what was felt, or the floor")
+    return frozenset(found)
 
 
 class Course(NamedTuple):
@@ -182,9 +185,9 @@ class Course(NamedTuple):
 
     def ends(self, episode: Evidence, only: Spot | None = None) -> dict[Spot, "Course"]:
         """Return the case after the next command, for each square in which that may have ended, or for one."""
-        unit, error, here, place = episode.unit, episode.error, self.squares[-1], self.places[-1]
+        unit, error, here, place = episode.unit, episode.unit // PLACE_PARTS, self.squares[-1], self.places[-1]
         held = frozenset(square for square in self.held[-1] if self.at(square, self.step) is not False)
-        word, found = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]]()
+        word, found, cases = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]](), dict[Spot, Course]()
         vector = episode.motion(self.step + 1, self.angle) if word == ("push" if held else "move") else (0, 0)
         if held and word not in ("push", "release"):
             refuse(f"step {self.step + 1}: what may be held is not pushed or released")
@@ -199,16 +202,15 @@ class Course(NamedTuple):
         for square in swept:  # a motion may have been stopped where it would have gone on in an occupied square
             if held or any((square[0] + a, square[1] + b) in barred for a, b in ahead):
                 ways = zip(place, vector, square, strict=True)
-                boxes.append([led(common(led(p, v, 0), side_of(k, unit)), 0, 0 if v else error) for p, v, k in ways])
+                boxes.append([led(cut(led(p, v, 0), k, unit), 0, 0 if v else error) for p, v, k in ways])
         for x, y in boxes:
             for square in touched((x, y), unit):
                 found.setdefault(square, []).append((x, y))
         since = max(k for k, row in enumerate(episode.actions[: self.step + 1]) if not row or row["do"] == "grasp")
         taken = [square for square in self.held[since] if held and self.at(square, since) is not False]
-        cases: dict[Spot, Course] = {}
         for square, ends in sorted(end for end in found.items() if only in (None, end[0])):
             low, high = ([side(end[n][k] for end in ends) for n in (0, 1)] for k, side in enumerate((min, max)))
-            x, y = box = [common((low[n], high[n]), side_of(square[n], unit)) for n in (0, 1)]
+            x, y = box = [cut((low[n], high[n]), square[n], unit) for n in (0, 1)]
             by = zip(box, self.places[since], strict=True)
             (a, b), (c, d) = ((now[0] - then[1] - error, now[1] - then[0] + error) for now, then in by)
             spans = [((i * unit + a, (i + 1) * unit + b), (j * unit + c, (j + 1) * unit + d)) for i, j in taken]
@@ -227,17 +229,14 @@ class Course(NamedTuple):
         """Return the squares in which the thing lies that was felt: all about them are settled as free; () for none."""
         if episode.touches[step][touch] in (None, VERGE_LETTER):
             return frozenset()
-        piece = {self.touch(step, touch) or refuse("what was grasped was felt between two squares")}
-        edge = list(piece)
-        while edge:
-            i, j = edge.pop()
-            around = {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - piece
-            new = {square for square in around if self.at(square, step) is not False}
-            edge += new
-            piece |= new
-            if len(piece) > MAX_SQUARES:
-                refuse(f"nothing bounds the thing felt at step {step}")
-        return frozenset(piece)
+        square = self.touch(step, touch) or refuse("what was grasped was felt between two squares")
+        return spread(frozenset([square]), lambda at: self.at(at, step) is not False)
+
+    def outline(self, episode: Evidence, felt: Spot) -> Spots:
+        """Return the squares that the thing felt covers if nothing was held before; () where some are not settled."""
+        is_early = felt[0] <= self.step and not any(self.held[: felt[0] + 1])
+        piece = self.piece(episode, *felt) if is_early else frozenset[Spot]()
+        return piece if all(self.at(square, felt[0]) for square in piece) else frozenset()
 
     def replayed(self, episode: Evidence) -> "Course | None":
         """Return the case with its places by all that is settled now; None where a command cannot have ended so."""
@@ -248,8 +247,7 @@ class Course(NamedTuple):
 
     def settle(self, episode: Evidence, terms: list[tuple[int, int, int]]) -> bool:
         """Settle squares by a sum of counts, (step, field, multiplier) each; return whether no count fits it."""
-        weights: dict[Key, int] = {}
-        least = most = 0  # of the sum over the squares that are sampled for sure
+        weights, least, most = dict[Key, int](), 0, 0  # of the squares that are sampled for sure; of their sum
         for step, field, multiplier in terms:
             counts = episode.ranges.get((step, field)) if step <= self.step else None
             ends = [multiplier * n for n in counts or refuse("a count is of no field of an impression so far")]

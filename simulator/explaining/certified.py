@@ -112,7 +112,7 @@ def _line(line: CaseLine, steps: Sequence[RecordedStep]) -> Reason:
         return _count(line[1:], steps)
     told = {
         "replay": ("the ways of the commands are worked out again", "by what is settled now"),
-        "holds": ("every goal holds here", "all commands are taken"),
+        "holds": ("it is as claimed here", "the commands up to the step of the claim are taken"),
     }
     claim, because = told.get(line[0], (json.dumps(line), ""))
     return Reason(claim, because, ReasonKind.MEASURED, "certificate")

@@ -211,20 +211,25 @@ const checkCertificate = (() => {
       return sample && from(one.squares[k], sample);
     }
 
+    // Some squares, and all that lead to them by edges over open squares, by key.
+    spread(squares, isOpen) {
+      const found = new Map(squares.map((square) => [keyOf(square), square]));
+      for (const square of found.values()) { // grows while it is gone through
+        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
+          const next = from(square, offset);
+          if (!found.has(keyOf(next)) && isOpen(next)) found.set(keyOf(next), next);
+        }
+        need(found.size <= MAX_SQUARES, "it reaches too far");
+      }
+      return found;
+    }
+
     // Squares in which all lies of what a touch felt, at its step.
     piece(one, [k, t]) {
       if ([null, "b"].includes(this.steps[k].touch[t])) return [];
       const first = this.touched(one, [k, t]);
       need(first, "it is not sure which square was touched");
-      const found = new Map([[keyOf(first), first]]);
-      for (const square of found.values()) { // grows while it is gone through
-        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
-          const next = from(square, offset);
-          if (!found.has(keyOf(next)) && this.at(one, next, k) !== false) found.set(keyOf(next), next);
-        }
-        need(found.size <= MAX_SQUARES, "what was touched may reach too far");
-      }
-      return [...found.values()];
+      return [...this.spread([first], (square) => this.at(one, square, k) !== false).values()];
     }
 
     // ---- commands
@@ -403,21 +408,72 @@ const checkCertificate = (() => {
       return winds !== 0;
     }
 
-    // Whether a frame [W, S, E, N] shuts the robot in, or the thing of a touch.
-    shutIn(one, frame, touch) {
-      if (frame.length !== 4 || !frame.every((number) => Number.isInteger(number) && Math.abs(number) <= MAX_SQUARES)) return false;
-      const [west, south, east, north] = frame, felt = this.felt(one), colourOf = (square) => felt.get(keyOf(square))?.colour;
-      const piece = touch ? this.piece(one, touch) : [[0, 0]], solid = new Set(piece.map(keyOf));
-      if (touch && (one.held.slice(0, touch[0] + 1).some((held) => held.length) || !piece.every((square) => this.at(one, square, touch[0])))) return false;
-      if (!piece.every(([i, j]) => west < i && i < east && south < j && j < north)) return false;
-      const upTo = (first, last, of) => Array.from({ length: Math.max(last - first + 1, 0) }, (_, n) => of(first + n));
-      const isSolid = ([i, j], size) => upTo(i, i + size - 1, (x) => upTo(j, j + size - 1, (y) => solid.has(keyOf([x, y])))).flat().every(Boolean);
-      let widest = 0;
-      while (piece.some((square) => isSolid(square, widest + 1))) widest += 1;
-      const ring = (by) => [[west + by, east - by].map((i) => upTo(south + 1, north - 1, (j) => [i, j])), [south + by, north - by].map((j) => upTo(west + 1, east - 1, (i) => [i, j]))].flat();
-      const wall = new RegExp(`^(#\\.{0,${widest - 1}})*#$`);
-      if (widest === 0 || !ring(0).every((side) => wall.test(side.map((square) => (colourOf(square) === "b" ? "#" : ".")).join("")))) return false;
-      return ring(1).flat().every((square) => this.wasFree(one, square) || (felt.has(keyOf(square)) && colourOf(square) !== "b"));
+    // The squares of the robot, or those that are all covered by the thing of a touch; [] where that is not settled.
+    extent(one, touch) {
+      if (!touch) return [[0, 0]];
+      if (touch[0] >= one.squares.length || one.held.slice(0, touch[0] + 1).some((held) => held.length)) return [];
+      const piece = this.piece(one, touch);
+      return piece.every((square) => this.at(one, square, touch[0])) ? piece : [];
+    }
+
+    // The squares that the middle of a square of so many squares never leaves which lies in some squares, by key; empty where it may.
+    floorOf(one, squares, size) {
+      const felt = this.felt(one), verge = new Set([...felt].filter(([, { colour }]) => colour === "b").map(([key]) => key)), walls = new Set(verge);
+      for (const key of verge) {
+        for (const [x, y] of [[1, 0], [0, 1]]) {
+          const line = Array.from({ length: size + 1 }, (_, n) => keyOf(from(felt.get(key).square, [n * x, n * y])));
+          line.forEach((end, n) => { if (verge.has(end)) line.slice(0, n).forEach((between) => walls.add(between)); });
+        }
+      }
+      const floor = this.spread(squares, (square) => !walls.has(keyOf(square))), isIn = (square) => floor.has(keyOf(square));
+      const about = [-1, 0, 1].flatMap((x) => [-1, 0, 1].map((y) => [x, y]));
+      const isNoVerge = (square) => this.wasFree(one, square) || (felt.has(keyOf(square)) && felt.get(keyOf(square)).colour !== "b");
+      return [...floor.values()].every((square) => isNoVerge(square) || about.every((offset) => isIn(from(square, offset)))) ? floor : new Map();
+    }
+
+    // Of which squares of so many squares all squares are among those of a map: their south-west squares, by key.
+    blocks(squares, size) {
+      let found = squares;
+      for (let side = 1; side < size; side += 1) {
+        const smaller = found;
+        found = new Map([...smaller].filter(([, square]) => [[1, 0], [0, 1], [1, 1]].every((offset) => smaller.has(keyOf(from(square, offset))))));
+      }
+      return found;
+    }
+    widest(squares) {
+      let size = 1;
+      while (this.blocks(squares, size + 1).size) size += 1;
+      return size;
+    }
+
+    // Whether no neck of a floor is a door for what is so wide.
+    isOneRoom(floor, size) {
+      for (let width = size; width < this.widest(floor); width += 1) {
+        let side = width + 1;
+        while (side * side < 2 * width * width) side += 1;
+        const large = this.blocks(floor, side), small = this.blocks(floor, width + 1);
+        const joined = this.spread([...large.values()].slice(0, 1), (square) => small.has(keyOf(square)));
+        if (![...large.keys()].every((key) => joined.has(key))) return false;
+      }
+      return true;
+    }
+
+    // Whether goals of the robot, or of the thing of a touch, cannot hold at once; isWalled: what is felt as verge is whole.
+    barred(one, goals, touch, isWalled) {
+      const extent = this.extent(one, touch), own = new Map(extent.map((square) => [keyOf(square), square]));
+      if (!extent.length || goals.some(({ what, word }) => what !== goals[0].what || (goals.length > 1 && word))) return false;
+      const size = this.widest(own), floor = isWalled ? this.floorOf(one, extent, size) : new Map();
+      if (goals.some(({ kind }) => kind === "room")) return goals.length === 1 && floor.size > 0 && this.isOneRoom(floor, size);
+      const { c, s } = turned(one.degrees), ways = goals.map(({ of: name }) => CORNERS[name]).map(([a, b]) => [BigInt(a) * c - BigInt(b) * s, BigInt(a) * s + BigInt(b) * c]);
+      const furthest = (squares, [u, v]) => squares.map(([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n))).reduce(most);
+      const free = [...one.settled].filter(([, occupied]) => !occupied).map(([key]) => key.split(",").map(Number).slice(0, 2));
+      const [columns, rows] = AXES.map((a) => new Set(extent.map((square) => square[a])).size), length = BigInt(columns + rows);
+      const places = [...floor.values()];
+      const reached = ways.map((way) => (free.length ? furthest(free, way) : 0n)).reduce((a, b) => a + b, 0n);
+      const least = reached - (BigInt(ways.length) * (2n + length) + (places.length ? length : 0n)) * ONE;
+      const sum = AXES.map((a) => ways.reduce((total, way) => total + way[a], 0n));
+      if (!places.length) return sum.every((part) => part === 0n) && least > 0n;
+      return least > furthest(places, sum);
     }
   }
 
@@ -426,12 +482,14 @@ const checkCertificate = (() => {
   // What a goal asks for: { word, kind, what, of }; kind is null where certificates show nothing of it.
   function goalOf(text) {
     const [, word, goal] = /^(first|then|prefer)\((.*)\)$/.exec(text) || [null, "", text];
-    const corner = /^at\(utak,corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\(([a-z]\w*),([a-z]\w*)\)$/.exec(goal);
-    const [, leaves] = /^in\((\w+),room\(next\)\)$/.exec(goal) || /^through\((\w+),\w+\)$/.exec(goal) || [];
-    if (corner && corner[1] in CORNERS) return { text, word, kind: "corner", what: "utak", of: corner[1], objects: [] };
-    if (!thing || (thing[1] === "circled" && thing[2] !== "utak") || (thing[1] !== "at" && thing[3] === "start")) return { text, word, kind: null, leaves };
-    const [, relation, what, of] = thing, kind = of === "start" ? "start" : relation === "circled" ? "circled" : what === "utak" ? "felt" : "near";
-    return { text, word, kind, what, of, objects: [what, of].filter((name) => name !== "utak" && name !== "start") };
+    const corner = /^at\((\w+),corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\((\w+),(\w+)\)$/.exec(goal);
+    const [, left, passing] = /^in\((\w+),room\(next\)\)$|^through\((\w+),(?!start\)|corner\))\w+\)$/.exec(goal) || [];
+    const made = (kind, what, of) => ({ text, word, kind, what, of, objects: [what, of].filter((name) => name && !["utak", "start"].includes(name) && kind !== "corner") });
+    if (corner) return { ...made("corner", corner[1], corner[2]), objects: corner[1] === "utak" ? [] : [corner[1]] };
+    if (left || passing) return made("room", left || passing);
+    if (!thing || thing[3] === "corner" || (thing[1] !== "at" && thing[3] === "start")) return made(null);
+    const [, relation, what, of] = thing;
+    return made(of === "start" ? "start" : relation === "circled" ? "circled" : what === "utak" ? "felt" : "near", what, of);
   }
 
   // What stands for granted besides, for things that were felt.
@@ -465,7 +523,7 @@ const checkCertificate = (() => {
 
   // The goals that are shown, each with its step; refused where they are not those of the claim.
   function checkDone({ steps, meaning }, episode, goals) {
-    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), unknown = shown.find(({ kind }) => kind === null);
+    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), isUnknown = ({ kind, what }) => kind === null || kind === "room" || (["corner", "circled"].includes(kind) && what !== "utak"), unknown = shown.find(isUnknown);
     need(shown.length > 0, "there is no goal to be shown");
     need(!unknown, `certificates show nothing of ${unknown && unknown.text}`);
     need(Array.isArray(steps) && steps.length === shown.length, "there is not one step for each goal");
@@ -481,18 +539,21 @@ const checkCertificate = (() => {
     return { given, shown };
   }
 
-  function checkImpossible({ steps, meaning }, episode, goals) {
-    need(same(steps, [episode.steps.length - 1]), "impossible is shown of the last step");
-    const barred = goals.find(({ word, leaves }) => word !== "prefer" && leaves), names = [barred?.leaves].filter((name) => name && name !== "utak");
-    need(barred, "certificates show of none of these goals that it is impossible");
-    const given = checkMeaning(meaning, episode, names);
-    return { given: [...given, "whole(squares)", "isolated(things)", ...(names.length ? ["apart(things)"] : [])], shown: [{ ...barred, kind: "shut", of: names[0] }] };
+  // The goals of which it is shown that they cannot hold at once, each with the step at which.
+  function checkImpossible({ steps, meaning, given }, episode, goals) {
+    const last = episode.steps.length - 1, asked = goals.filter(({ word }) => word !== "prefer");
+    need(Array.isArray(steps) && steps.length === asked.length, "there is not one step, or null, for each goal");
+    const shown = asked.map((goal, n) => ({ ...goal, step: steps[n] })).filter(({ step }) => step !== null);
+    need(shown.length > 0, "there is no goal to be shown");
+    need(shown.every(({ step }) => Number.isInteger(step) && step >= 0 && step <= last && step === shown[0].step), "this is no step of all goals");
+    need(shown.every(({ kind }) => ["corner", "room"].includes(kind)), "certificates show of none of these goals that it is impossible");
+    const names = [...new Set(shown.flatMap(({ objects }) => objects))], claims = checkMeaning(meaning, episode, names);
+    const walls = ["whole(squares)", "isolated(things)", ...(names.length ? ["apart(things)"] : [])];
+    return { given: Array.isArray(given) && given.includes(walls[0]) ? [...claims, ...walls] : claims, shown };
   }
 
-  // Whether a case shows a goal; frame : what stands behind the word `holds`.
-  function shows(world, one, { kind, what, of, step }, meaning, frame) {
-    if (kind === "shut") return world.shutIn(one, frame, meaning[of]);
-    if (frame.length) return false;
+  // Whether a case shows a goal that is done.
+  function shows(world, one, { kind, what, of, step }, meaning) {
     const covered = (name) => world.covered(one, meaning[name], step);
     if (kind === "start") return (what === "utak" ? [one.squares[step]] : covered(what)).some((square) => same(square, [0, 0]));
     if (kind === "near") return covered(what).some(([i, j]) => covered(of).some(([x, y]) => Math.abs(x - i) <= 1 && Math.abs(y - j) <= 1));
@@ -527,10 +588,10 @@ const checkCertificate = (() => {
         } else if (word === "replay" && values.length === 0) {
           if (!world.replay(one)) done();
         } else {
-          need(word === "holds", `${at}there is no such line`);
+          need(word === "holds" && values.length === 0, `${at}there is no such line`);
           need(one.squares.length === world.steps.length, `${at}commands are left`);
-          need(holds(one, values), `${at}this case does not show the goals`);
-          shown.push({ ...world.drawn(one), frame: values });
+          need(holds(one), `${at}this case does not show the goals`);
+          shown.push(world.drawn(one));
           done();
         }
       }
@@ -556,9 +617,11 @@ const checkCertificate = (() => {
     need(Array.isArray(cases) && (cases.length === 0) === simple, simple ? "touches show these goals, and no cases" : "cases are missing");
     let shown = [];
     if (!simple) {
-      const why = foreign(episode), world = new World(episode);
+      const why = foreign(episode), steps = claim === "done" ? episode.steps : episode.steps.slice(0, wanted.shown[0].step + 1), world = new World({ steps });
       need(why === null, why);
-      shown = readCases(cases, world, along ? 1 : 90, (one, frame) => wanted.shown.every((goal) => shows(world, one, goal, meaning, frame)));
+      const isDone = (one) => wanted.shown.every((goal) => shows(world, one, goal, meaning));
+      const isBarred = (one) => world.barred(one, wanted.shown, meaning[wanted.shown[0].what], given.includes("whole(squares)"));
+      shown = readCases(cases, world, along ? 1 : 90, claim === "done" ? isDone : isBarred);
     }
     const touches = Object.entries(meaning).map(([name, touch]) => ({ name, touch, offset: TOUCHES[touch[1]] }));
     return { accepted: true, says: `${claim}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };

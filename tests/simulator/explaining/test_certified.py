@@ -36,7 +36,7 @@ def test_each_line_is_a_sentence(certified: tuple[Path, Path]) -> None:
     assert found.claim.startswith("a certificate shows done: circled(utak,x) at step 6, at(utak,start) at step 6")
     told = Counter(reason.claim for reason in found.walk())
     words = Counter(line[0] for line in json.loads(text)["cases"])
-    assert told["every goal holds here"] == words["holds"]
+    assert told["it is as claimed here"] == words["holds"]
     assert told["the ways of the commands are worked out again"] == words["replay"]
     assert sum(n for claim, n in told.items() if claim.startswith("a command may have ended in")) == words["end"]
     kinds = Counter(reason.kind for reason in found.walk())
