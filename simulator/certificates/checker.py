@@ -4,42 +4,32 @@ docs/certificates.md is the format, and all that is taken for granted. This modu
 ours, search nothing, compare no floats, and read neither beliefs nor the truth of an episode.
 """
 
-import json
 import re
 from itertools import pairwise, product
 from typing import Any
 
-from utak.simulator.certificates.courses import (
-    MAX_SQUARES,
-    VERGE_LETTER,
-    Course,
-    Evidence,
-    Spot,
-    Spots,
-    parsed,
-    refuse,
-    sampled,
-    turned,
-    waking_case,
-)
+from utak.simulator.certificates import courses
+from utak.simulator.certificates.courses import Course, Evidence, Spot, Spots, parsed, refuse, touched, turned
 
 VERDICTS_SHOWN = ("done", "impossible")
 KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "cases")
 SHOWN_GOAL = re.compile(r"(?:(first|then)\()?(at|beside|circled)\((\w+),(?:corner\((\w+)\)|(\w+))\)(?(1)\))")
-BARRED_GOAL = re.compile(r"(?:(first|then)\()?(?:in\((\w+),room\(next\)\)|through\((\w+),\w+\))(?(1)\))")
+BARRED_GOAL = re.compile(r"(?:(first|then)\()?(?:in\((\w+),room\(next\)\)|through\((\w+),(\w+)\))(?(1)\))")
+OF_DOORS = ["verge(walls)", "isolated(things)", "parted(rooms)"]  # given, of `done` of such a goal
 OF_WALLS, OF_THINGS = ["whole(squares)", "isolated(things)"], ["apart(things)"]  # given, of `impossible`
 ALONG_GRID = "along(grid)"  # given: the robot's axes lie along the squares, so only the angle 0 is treated
 RIGHT_ANGLE = 90  # degrees: a quarter turn of the grid of squares is the same grid
 CORNERS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
 OWN_NAME = "utak"
-Shown = tuple[str, str, str, str]  # corner, start, near, circled or shut; of what; the corner or parameter; the order
+Shown = tuple[str, str, str, str]  # corner, start, near, circled, room or shut; of what; corner or parameter; order
 
 
 def goal_of(text: str, claim: str) -> Shown:
     """Return a goal of the task."""
-    found = (SHOWN_GOAL if claim == "done" else BARRED_GOAL).fullmatch(text) or refuse(f"nothing is shown of {text}")
-    if claim != "done":
-        return "shut", found[2] or found[3], "", ""
+    if barred := BARRED_GOAL.fullmatch(text):
+        what = barred[2] or barred[3]
+        return ("room", what, barred[4] or "", barred[1] or "") if claim == "done" else ("shut", what, "", "")
+    found = SHOWN_GOAL.fullmatch(text) or refuse(f"nothing is shown of {text}")
     order, word, what, corner, name = found.groups()
     kind = "corner" if corner else "start" if name == "start" else "near" if word != "circled" else word
     if (word != "at" and kind in ("corner", "start")) or (kind in ("corner", "circled") and what != OWN_NAME):
@@ -74,18 +64,20 @@ class CertificateCheck:
         self.goals = [goal_of(text, self.claim) for text in self.texts]
         if not are_whole(self.steps, len(self.goals)) or not all(0 <= k <= self.episode.last for k in self.steps):
             refuse("it has not one step for each goal")
+        self.has_frame = any(goal[0] in ("room", "shut") for goal in self.goals)
         self.timed = list(zip(self.steps, self.goals, strict=True))
         ordered = [k for k, goal in self.timed if goal[3]]
         if ordered != sorted(ordered) or any(k != self.episode.last for k, goal in self.timed if not goal[3]):
             refuse("its steps are not in the order of the task, or a goal does not hold at the end")
         taken = self.check_meaning() + (OF_WALLS + OF_THINGS * bool(self.meaning)) * (self.claim == "impossible")
         if self.given not in (taken, [*taken, ALONG_GRID]):
-            refuse(f"what it is given must be {json.dumps(taken)}, and perhaps {ALONG_GRID}")
+            refuse(f"what it is given must be {taken}, and perhaps {ALONG_GRID}")
 
     def check_meaning(self) -> list[str]:
         """Return the claims of the task about things that are taken to be so; refuse unless each thing was felt."""
-        named = dict.fromkeys(name for _, *names, _ in self.goals for name in names if name in self.episode.kinds)
-        if not isinstance(self.meaning, dict) or list(self.meaning) != list(named):
+        names = dict.fromkeys(name for _, *names, _ in self.goals for name in names if name in self.episode.kinds)
+        named, doors = ([name for name in names if (self.episode.kinds[name] == "door") == k] for k in (0, 1))
+        if not isinstance(self.meaning, dict) or list(self.meaning) != named:
             refuse("it must say what was felt of each thing that the goals name, and of no other")
         taken, letters = dict[str, str](), list[str]()  # a claim: the name of the thing; colours
         for name, felt in self.meaning.items():
@@ -93,15 +85,13 @@ class CertificateCheck:
                 refuse(f"{name} is no object of the task, or what was felt is not named by a step and a touch")
             letters.append(self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}"))
             taken.update(dict.fromkeys(claims_taken(self.episode, name, letters[-1]), str(name)))
-        if len({*letters, VERGE_LETTER}) <= len(letters) or any(
-            fact.startswith(f"colour({name},") for fact, name in taken.items()
-        ):
-            refuse(
-                "two things of one colour may be one, or a thing is of another colour than the task claims, or verge"
-            )
+        taken.update({fact: name for name in doors for fact in claims_taken(self.episode, name, "")})
+        is_other = any(fact.startswith(f"colour({name},") for fact, name in taken.items())
+        if is_other or len({*letters, courses.VERGE_LETTER}) <= len(letters):
+            refuse("things of one colour may be one, or one is of another colour than the task claims, or verge")
         if any(goal[:2] == ("near", OWN_NAME) and self.meaning[goal[2]][0] != k for k, goal in self.timed):
             refuse("a thing was not felt at the step of its goal")
-        return list(taken)
+        return [*taken, *(OF_DOORS if self.has_frame and self.claim == "done" else ())]
 
     def check(self) -> str:
         """Return what is shown, in words; refuse when the claim does not follow."""
@@ -126,12 +116,12 @@ class CertificateCheck:
                 case = None if case.settle(self.episode, args) else case
             elif word == "replay" and case and not args:
                 case = case.replayed(self.episode)
-            elif word == "holds" and case and case.step == self.episode.last:
+            elif word == "holds" and case and case.step == self.episode.last and bool(args) == self.has_frame:
                 if not all(self.holds(goal, case, step, args) for step, goal in self.timed):
                     refuse(f"line {number}: a goal may not hold")
                 case, shown = None, shown + 1
             elif word == "angle" and not case and not left and repr(args) == f"[{angle + 1}]" and angle + 1 < angles:
-                angle, case = angle + 1, waking_case(angle + 1, self.episode)
+                angle, case = angle + 1, courses.waking_case(angle + 1, self.episode)
             elif word == "end" and are_whole(args, 2) and (left if case is None else case.step < self.episode.last):
                 if case:
                     left.append(case.ends(self.episode))
@@ -144,38 +134,55 @@ class CertificateCheck:
         if case or left or angle != angles - 1 or not shown:
             refuse("it ends before all cases are treated, or the episode agrees with no world")
 
-    def holds(self, goal: Shown, case: Course, step: int, frame: list[int]) -> bool:
+    def holds(self, goal: Shown, case: Course, step: int, frame: list[Any]) -> bool:
         """Return whether a goal holds at a step of a case for sure, or is barred by a frame of squares."""
         kind, what, name, _ = goal
-        if kind == "shut" or frame:
-            return kind == "shut" and are_whole(frame, 4) and self.is_shut_in(what, case, frame)
+        if kind == "shut":
+            return are_whole(frame, 4) and self.is_shut_in(what, case, frame)
+        if kind == "room":
+            return len(frame) == 3 and all(are_whole(one, 4) for one in frame) and self.is_next(what, case, step, frame)
         if kind == "circled":
             return self.is_circled(name, case, step)
-        if kind == "near" and what == OWN_NAME:
-            return True
-        covered = {case.squares[step]} if what == OWN_NAME else case.covered(self.episode, self.meaning[what], step)
+        covered, other = (case.covered(self.episode, self.meaning.get(one), step) for one in (what, name))
         if kind == "near":
-            pairs = product(covered, case.covered(self.episode, self.meaning[name], step))
-            return any(max(abs(i - a), abs(j - b)) <= 1 for (i, j), (a, b) in pairs)
+            pairs = product(covered, other)
+            return what == OWN_NAME or any(max(abs(i - a), abs(j - b)) <= 1 for (i, j), (a, b) in pairs)
         return (0, 0) in covered if kind == "start" else self.is_corner(name, case, step)
+
+    def is_next(self, what: str, case: Course, step: int, frames: list[list[int]]) -> bool:
+        """Return whether what began in one of two rectangles of floor that a door joins lies in the other."""
+        began, lies = case.extent(self.episode, self.meaning.get(what), step)
+        door, *rooms = (Spots(touched(((w, e + 1), (s, n + 1)))) for w, s, e, n in frames)
+        floor = door.union(*rooms)
+        unseen = {at for at in floor - began - {*case.squares[: step + 1]} if not case.was_free(at)}
+        way = 1 if frames[0][0] - 1 in (frames[1][2], frames[2][2]) else -1  # it leads along the rows, or the columns
+        (w, s, e, n), *sides = frames if way > 0 else [[s, w, n, e] for w, s, e, n in frames]
+        low, high = sorted(sides)
+        beside = [[(i, j) if way > 0 else (j, i) for j in (s - 1, n + 1)] for i in range(w, e + 1)]
+        walls = {at for pair in beside for at in pair if at not in began and case.occupied.get((*at, 0))}
+        walls |= {at for pair in beside for at in pair if at not in lies and case.at(at, step)}
+        walled = [walls.issuperset(pair) for pair in beside]  # each column or row of the door
+        is_joined = low[2] + 1 == w <= e == high[0] - 1 and all(one[1] <= s <= n <= one[3] for one in sides)
+        is_narrow = min(one[k + 2] - one[k] for one in sides for k in (0, 1)) > 2 * (n - s)
+        is_floor = len(floor) <= courses.MAX_SQUARES and case.spread(unseen, step) <= floor
+        is_led = began and lies and any(began <= one and lies <= other for one, other in (rooms, rooms[::-1]))
+        return bool(
+            is_joined and is_narrow and is_floor and is_led and len(walled) > walled.count(False) < 2 * (n - s + 1)
+        )
 
     def is_corner(self, name: str, case: Course, step: int) -> bool:
         """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""
-        (u, v), (i, j) = (
-            turned(*CORNERS[name], case.angle),
-            case.squares[step],
-        )  # the direction of the corner, map frame
+        (u, v), (i, j) = turned(*CORNERS[name], case.angle), case.squares[step]  # where the corner is, map frame
         ahead = (i + (1 if u > 0 else -1), j), (i, j + (1 if v > 0 else -1))
-        if not (
-            u and v and case.was_free((i, j)) and all(case.at(at, step) and at not in case.held[step] for at in ahead)
-        ):
+        is_shut = all(case.at(at, step) and at not in case.held[step] for at in ahead)
+        if not (u and v and is_shut and case.was_free((i, j))):
             return False
 
         def is_further(p: int, q: int) -> bool:
             return u * (p + (u > 0)) + v * (q + (v > 0)) > u * (i + (u > 0)) + v * (j + (v > 0))
 
         for (k, field), (_, most) in self.episode.ranges.items():  # does it show floor further on?
-            (p, q), squares = case.squares[min(k, step)], sampled(case.angle)[field][0]
+            (p, q), squares = case.squares[min(k, step)], courses.sampled(case.angle)[field][0]
             if k <= step and sum(n for (c, d), n in squares.items() if is_further(p + c, q + d)) > most:
                 return False
         return not any(is_further(*square) for square in case.squares[: step + 1])
@@ -190,9 +197,8 @@ class CertificateCheck:
         x, y = ((2 * number + 1) * self.episode.unit for number in thing)
         winding = 0
         for (x0, y0), (x1, y1) in pairwise([*track, track[0]]):
-            if (y0 <= y) != (y1 <= y):
-                left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
-                winding += (left > 0 and y1 > y0) - (left < 0 and y1 < y0)
+            left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
+            winding += (y0 <= y < y1 and left > 0) - (y1 <= y < y0 and left < 0)
         return winding != 0 and case.at((0, 0), step) is False
 
     def is_shut_in(self, what: str, case: Course, frame: list[int]) -> bool:
@@ -202,7 +208,9 @@ class CertificateCheck:
         if what != OWN_NAME:
             within = case.piece(self.episode, *self.meaning[what])
             solid = within if all(case.at(square, 0) for square in within) else Spots()
-        if max(map(abs, frame)) > MAX_SQUARES or (what != OWN_NAME and any(case.held[: self.meaning[what][0] + 1])):
+        if max(map(abs, frame)) > courses.MAX_SQUARES or (
+            what != OWN_NAME and any(case.held[: self.meaning[what][0] + 1])
+        ):
             return False  # what was carried may lie beside it
         while any(solid >= {*product(range(i, i + size + 1), range(j, j + size + 1))} for i, j in solid):
             size += 1  # of the largest square of squares in it
@@ -210,9 +218,9 @@ class CertificateCheck:
             felt.update({case.touch(k, number): letter for number, letter in enumerate(touches)})
         sides = [[(i, j) for j in range(s + 1, n)] for i in (w, e)]
         sides += [[(i, j) for i in range(w + 1, e)] for j in (s, n)]
-        walls = ["".join("#" if felt.get(at) == VERGE_LETTER else "." for at in side) for side in sides]
+        walls = ["".join("#" if felt.get(at) == courses.VERGE_LETTER else "." for at in side) for side in sides]
         rim = {*product((w + 1, e - 1), range(s + 1, n)), *product(range(w + 1, e), (s + 1, n - 1))}
-        is_rim = all(felt.get(at, VERGE_LETTER) != VERGE_LETTER or case.was_free(at) for at in rim)
+        is_rim = all(felt.get(at, courses.VERGE_LETTER) != courses.VERGE_LETTER or case.was_free(at) for at in rim)
         is_within = size > 0 and all(w < i < e and s < j < n for i, j in within)
         return is_within and is_rim and all(re.fullmatch(rf"(#\.{{0,{size - 1}}})*#", wall) for wall in walls)
 

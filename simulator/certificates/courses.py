@@ -5,9 +5,10 @@ Of a certificate this is what its lines rest on, and `checker` is the rest. Both
 
 import json
 from collections import Counter
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import cache
-from itertools import accumulate, pairwise, product
+from itertools import accumulate, product
 from math import lcm
 from typing import Any, NamedTuple, NoReturn
 
@@ -15,9 +16,8 @@ FIELD_ZONES = ((4, 0, 1), (8, 4, 2), (16, 8, 4))  # of the retina: reach, reach 
 FIELD_OFFSETS = [  # of the retina, in order: the offset (east, north) of the south-west square, and the side
     (east, north, side)
     for reach, inner, side in FIELD_ZONES
-    for north in range(reach - side, -reach - 1, -side)
-    for east in range(-reach, reach, side)
-    if not (-inner <= east < inner and -inner <= north < inner)
+    for north, east in product(range(reach - side, -reach - 1, -side), range(-reach, reach, side))
+    if min(east, north) < -inner or max(east, north) >= inner
 ]
 SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}  # the robot always fills its square
 LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
@@ -115,8 +115,8 @@ class Evidence:
 
     def motion(self, step: int, angle: int) -> Span:
         """Return the vector of a command, map frame."""
-        east, north = self.vectors[step]
-        x, y = turned(int(east * self.parts), int(north * self.parts), angle)
+        east, north = (int(number * self.parts) for number in self.vectors[step])
+        x, y = turned(east, north, angle)
         return x * 2 * PLACE_PARTS, y * 2 * PLACE_PARTS
 
 
@@ -130,12 +130,7 @@ def led(interval: Span, by: int, error: int) -> Span:
     return interval[0] + min(by, 0) - error, interval[1] + max(by, 0) + error
 
 
-def side_of(number: int, unit: int) -> Span:
-    """Return the range of the coordinates of a row or column of squares."""
-    return number * unit, (number + 1) * unit
-
-
-def touched(box: Zone, unit: int) -> list[Spot]:
+def touched(box: Zone, unit: int = 1) -> list[Spot]:
     """Return the squares in whose inside a box has a part."""
     columns, rows = (range(low // unit, -(-high // unit)) for low, high in box)
     return list(product(columns, rows)) if len(columns) * len(rows) <= MAX_SQUARES else refuse("it leads too far")
@@ -198,8 +193,8 @@ class Course(NamedTuple):
         boxes = [[led((p[0] + v, p[1] + v), 0, error) for p, v in zip(place, vector, strict=True)]]
         for square in swept:  # a motion may have been stopped where it would have gone on in an occupied square
             if held or any((square[0] + a, square[1] + b) in barred for a, b in ahead):
-                ways = zip(place, vector, square, strict=True)
-                boxes.append([led(common(led(p, v, 0), side_of(k, unit)), 0, 0 if v else error) for p, v, k in ways])
+                ways = zip(place, vector, [(k * unit, (k + 1) * unit) for k in square], strict=True)
+                boxes.append([led(common(led(p, v, 0), side), 0, 0 if v else error) for p, v, side in ways])
         for x, y in boxes:
             for square in touched((x, y), unit):
                 found.setdefault(square, []).append((x, y))
@@ -208,7 +203,7 @@ class Course(NamedTuple):
         cases: dict[Spot, Course] = {}
         for square, ends in sorted(end for end in found.items() if only in (None, end[0])):
             low, high = ([side(end[n][k] for end in ends) for n in (0, 1)] for k, side in enumerate((min, max)))
-            x, y = box = [common((low[n], high[n]), side_of(square[n], unit)) for n in (0, 1)]
+            x, y = box = [common((low[n], high[n]), (square[n] * unit, square[n] * unit + unit)) for n in (0, 1)]
             by = zip(box, self.places[since], strict=True)
             (a, b), (c, d) = ((now[0] - then[1] - error, now[1] - then[0] + error) for now, then in by)
             spans = [((i * unit + a, (i + 1) * unit + b), (j * unit + c, (j + 1) * unit + d)) for i, j in taken]
@@ -227,17 +222,20 @@ class Course(NamedTuple):
         """Return the squares in which the thing lies that was felt: all about them are settled as free; () for none."""
         if episode.touches[step][touch] in (None, VERGE_LETTER):
             return frozenset()
-        piece = {self.touch(step, touch) or refuse("what was grasped was felt between two squares")}
-        edge = list(piece)
-        while edge:
+        felt = self.touch(step, touch) or refuse("what was grasped was felt between two squares")
+        piece = self.spread({felt}, step)
+        return piece if len(piece) <= MAX_SQUARES else refuse(f"nothing bounds the thing felt at step {step}")
+
+    def spread(self, squares: set[Spot], step: int) -> Spots:
+        """Return squares, and those that lead to them over squares that are not settled as free, but not endlessly."""
+        found, edge = set(squares), list(squares)
+        while edge and len(found) <= MAX_SQUARES:
             i, j = edge.pop()
-            around = {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - piece
+            around = {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - found
             new = {square for square in around if self.at(square, step) is not False}
             edge += new
-            piece |= new
-            if len(piece) > MAX_SQUARES:
-                refuse(f"nothing bounds the thing felt at step {step}")
-        return frozenset(piece)
+            found |= new
+        return frozenset(found)
 
     def replayed(self, episode: Evidence) -> "Course | None":
         """Return the case with its places by all that is settled now; None where a command cannot have ended so."""
@@ -248,7 +246,7 @@ class Course(NamedTuple):
 
     def settle(self, episode: Evidence, terms: list[tuple[int, int, int]]) -> bool:
         """Settle squares by a sum of counts, (step, field, multiplier) each; return whether no count fits it."""
-        weights: dict[Key, int] = {}
+        weights = Counter[Key]()
         least = most = 0  # of the sum over the squares that are sampled for sure
         for step, field, multiplier in terms:
             counts = episode.ranges.get((step, field)) if step <= self.step else None
@@ -258,8 +256,7 @@ class Course(NamedTuple):
             most += max(ends) - min(multiplier * slack, 0)
             column, row = self.squares[step]
             for (i, j), weight in squares.items():
-                key = self.key((column + i, row + j), step)
-                weights[key] = weights.get(key, 0) + multiplier * weight
+                weights[self.key((column + i, row + j), step)] += multiplier * weight
         low = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight < 0))
         high = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight > 0))
         for key, weight in [(key, weight) for key, weight in weights.items() if key not in self.occupied and weight]:
@@ -273,23 +270,42 @@ class Course(NamedTuple):
         """Return whether nothing covered a square at some step."""
         return any(self.occupied.get((*square, k)) is False for k in (0, *self.changes.get(square, ())))
 
-    def carried(self, episode: Evidence, felt: Spot, step: int) -> int:
-        """Return the last step up to one at which the thing felt may be held, if it was grasped next; else -1."""
-        grasp, way = felt[0] + 1, {"do": "grasp", "direction": TOUCH_NAMES[felt[1]]}
-        is_taken = grasp <= step and episode.actions[grasp] == way
-        return next((k for k in range(grasp, step) if not self.held[k + 1]), step) if is_taken else -1
+    def grasps(self, episode: Evidence, felt: Spot, step: int) -> Iterator[tuple[int, int, Spot | None]]:
+        """Yield of each grasp after a touch, up to a step, the last step with what it took in hand, and its square."""
+        for k in range(felt[0] + 1, step + 1):
+            if episode.actions[k]["do"] == "grasp":
+                end = next((n for n in range(k, step) if not self.held[n + 1]), step)
+                yield k, end, self.touch(k - 1, TOUCH_NAMES.index(episode.actions[k]["direction"]))
 
-    def covered(self, episode: Evidence, felt: Spot, step: int) -> set[Spot]:
-        """Return squares that the thing felt covers for sure at a step."""
-        spot, last = self.touch(*felt), self.carried(episode, felt, step)
-        is_left = spot and felt[0] <= step and self.key(spot, felt[0]) == self.key(spot, step)
-        covered = {spot} if spot and is_left else set[Spot]()
-        for square, changes in self.changes.items():  # what was free before and is occupied now covers what was held
-            since = [0, *(k for k in changes if k <= step)]
-            free = any(self.occupied.get((*square, k)) is False and end > felt[0] + 1 for k, end in pairwise(since))
-            if free and since[-1] <= last and self.occupied.get((*square, since[-1])):
-                covered.add(square)
+    def covered(self, episode: Evidence, felt: Spot | None, step: int) -> set[Spot]:
+        """Return squares that the thing felt, or without a touch the robot, covers for sure at a step."""
+        if felt is None:
+            return {self.squares[step]}
+        spot, moves, covered = self.touch(*felt), set[int](), set[Spot]()
+        for last, end, grasped in [*self.grasps(episode, felt, step), (step + 1, 0, None)]:
+            is_left = spot and felt[0] < last and self.key(spot, felt[0]) == self.key(spot, last - 1)
+            covered = {spot} if spot and is_left else set()
+            for square, changes in self.changes.items():  # what was free before covers what alone was moved since
+                since = [0, *(k for k in changes if k < last)]
+                free = [n for n, k in enumerate(since) if self.occupied.get((*square, k)) is False]
+                if free and self.at(square, last - 1) and moves.issuperset(since[free[-1] + 1 :]):
+                    covered.add(square)
+            moves |= {*range(last + 1, end + 1)} if grasped in covered else set()
         return covered
+
+    def extent(self, episode: Evidence, felt: Spot | None, step: int) -> tuple[Spots, Spots]:
+        """Return squares in which all lay of a thing, or the robot, on waking, and lies at a step; () where unknown."""
+        if felt is None:
+            return Spots([(0, 0)]), Spots([self.squares[step]])
+        began = lies = self.piece(episode, *felt)
+        if felt[0] > step or self.held[felt[0]] or any(self.key(at, felt[0])[2] for at in began):
+            return Spots(), Spots()
+        for _, end, spot in self.grasps(episode, felt, step):
+            if spot in lies:  # where it covers a square that it did not, it was taken
+                lies = self.held[end] | (Spots() if self.covered(episode, felt, end) - lies else lies)
+        part = self.spread(self.covered(episode, felt, step), step)  # a thing is in one piece
+        lies &= part if 0 < len(part) <= MAX_SQUARES else lies
+        return began, Spots(at for at in lies if self.at(at, step) is not False)
 
 
 def waking_case(angle: int, episode: Evidence) -> Course:

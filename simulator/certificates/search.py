@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
     BARRED_GOAL,
+    OF_DOORS,
     OF_THINGS,
     OF_WALLS,
     OWN_NAME,
@@ -37,6 +38,7 @@ from utak.simulator.certificates.courses import (
     sampled,
     waking_case,
 )
+from utak.simulator.certificates.doors import door_shown
 
 MAX_CASES = 20000  # that are tried; a bound on time
 StatedLine = list[Any]
@@ -148,7 +150,8 @@ def _likely_steps(checker: CertificateCheck, case: Course) -> list[int]:
     ordered = [number for number, goal in enumerate(checker.goals) if goal[3]]
     for number, goal in enumerate(checker.goals):
         tried = range(earliest, last) if number in ordered[:-1] else range(0)
-        found = next((k for k in (*tried, last) if checker.holds(goal, case, k, [])), None)
+        shows = (k for k in (*tried, last) if goal[0] == "room" or checker.holds(goal, case, k, []))
+        found = next((k for k in shows if goal[0] != "room" or door_shown(checker, case, step=k)), None)
         if found is None:
             raise RefusedError(f"nothing shows {checker.texts[number]}")
         earliest = found if number in ordered else earliest
@@ -195,7 +198,8 @@ def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
     felt: dict[str, list[StatedLine]] = {}
     for kind, what, name, _ in goals:
         if what != OWN_NAME:
-            felt.setdefault(what, _touches(episode, what, "grasp" if kind != "shut" else "any"))
+            touches = _touches(episode, what, "grasp" if kind != "shut" else "any")
+            felt.setdefault(what, touches[::-1] if kind == "room" else touches)  # of a room: from where it began
         if kind in ("near", "circled"):
             is_near = kind == "near" and what == OWN_NAME
             if is_near or name not in felt:
@@ -205,8 +209,11 @@ def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
         letters = {name: episode.touches[step][touch] for name, (step, touch) in means.items()}
         if len(set(letters.values())) < len(letters):
             continue
-        taken = [fact for name, letter in letters.items() for fact in claims_taken(episode, name, letter)]
+        named = letters | {door: "" for kind, _, door, _ in goals if kind == "room" and door}
+        taken = [fact for name, letter in named.items() for fact in claims_taken(episode, name, letter)]
         given = list(dict.fromkeys(taken))
+        if claim == "done" and any(goal[0] == "room" for goal in goals):
+            given += OF_DOORS
         if claim == "impossible":
             given += OF_WALLS + (OF_THINGS if means else [])
         head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
@@ -237,7 +244,7 @@ class _Search:
 
     def __init__(self, episode: Evidence, checker: CertificateCheck) -> None:
         self.episode, self.checker = episode, checker
-        self.frame: list[int] = []  # that shut in what is to leave it before; of `impossible`
+        self.frame: list[Any] = []  # that shut in what is to leave it before, or the door that was shown
         self.cases = 0
 
     def all_lines(self, certificate: dict[str, Any]) -> list[StatedLine]:
@@ -297,6 +304,8 @@ class _Search:
         """Return the line that shows the goals; raises RefusedError where they may not hold."""
         if self.checker.claim == "impossible":
             self.frame = _frame(self.checker, case, self.frame)
+        elif self.checker.has_frame:
+            self.frame = door_shown(self.checker, case, self.frame) or []
         facts = ReadFacts(case.occupied)
         case = case._replace(occupied=facts)
         for text, goal, step in zip(self.checker.texts, self.checker.goals, self.checker.steps, strict=True):

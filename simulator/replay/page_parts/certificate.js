@@ -211,20 +211,27 @@ const checkCertificate = (() => {
       return sample && from(one.squares[k], sample);
     }
 
+    // Squares, and all that lead to them by edges over squares that are not settled as free; ends once there are too many.
+    flooded(one, squares, step) {
+      const found = new Map(squares.map((square) => [keyOf(square), square]));
+      for (const square of found.values()) { // grows while it is gone through
+        if (found.size > MAX_SQUARES) break;
+        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
+          const next = from(square, offset);
+          if (!found.has(keyOf(next)) && this.at(one, next, step) !== false) found.set(keyOf(next), next);
+        }
+      }
+      return [...found.values()];
+    }
+
     // Squares in which all lies of what a touch felt, at its step.
     piece(one, [k, t]) {
       if ([null, "b"].includes(this.steps[k].touch[t])) return [];
       const first = this.touched(one, [k, t]);
       need(first, "it is not sure which square was touched");
-      const found = new Map([[keyOf(first), first]]);
-      for (const square of found.values()) { // grows while it is gone through
-        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
-          const next = from(square, offset);
-          if (!found.has(keyOf(next)) && this.at(one, next, k) !== false) found.set(keyOf(next), next);
-        }
-        need(found.size <= MAX_SQUARES, "what was touched may reach too far");
-      }
-      return [...found.values()];
+      const found = this.flooded(one, [first], k);
+      need(found.length <= MAX_SQUARES, "what was touched may reach too far");
+      return found;
     }
 
     // ---- commands
@@ -358,20 +365,81 @@ const checkCertificate = (() => {
       return found;
     }
 
-    // Squares that the thing of a touch covers at a step for sure.
-    covered(one, [k, t], step) {
-      const square = this.touched(one, [k, t]), found = [];
-      if (square && k <= step && !this.times(one, square, step).some((time) => time > k)) found.push(square);
-      const { action } = this.steps[k + 1] || {};
-      if (!action || action.do !== "grasp" || DIRECTIONS[t] !== action.direction || k + 1 > step) return found;
-      let last = k;
-      while (last < step && one.held[last + 1].length) last += 1;
-      for (const key of one.changes.keys()) {
-        const other = key.split(",").map(Number), times = this.times(one, other, step), now = times.at(-1);
-        const wasFree = times.some((time, n) => n + 1 < times.length && times[n + 1] > k + 1 && one.settled.get(`${key},${time}`) === false);
-        if (now > k + 1 && now <= last && this.at(one, other, step) && wasFree) found.push(other);
+    // The grasps after a step, up to another: each with its square, and the last step of its spell.
+    grasps(one, after, upTo) {
+      const found = [];
+      for (let g = after + 1; g <= upTo; g += 1) {
+        const { action } = this.steps[g];
+        if (action.do !== "grasp") continue;
+        let end = g;
+        while (end < upTo && one.held[end + 1].length) end += 1;
+        found.push({ grasp: g, end, square: this.touched(one, [g - 1, DIRECTIONS.indexOf(action.direction)]) });
       }
       return found;
+    }
+
+    // Squares that the thing of a touch covers at a step for sure.
+    covered(one, touch, step) {
+      const spells = [];
+      for (const { grasp, end, square } of this.grasps(one, touch[0], step)) {
+        if (square && this.coveredBy(one, touch, grasp - 1, spells).some((other) => same(other, square))) spells.push([grasp, end]);
+      }
+      return this.coveredBy(one, touch, step, spells);
+    }
+
+    // The same, by the spells of the thing.
+    coveredBy(one, [k, t], step, spells) {
+      const square = this.touched(one, [k, t]), found = new Map(), inSpells = (time) => spells.some(([grasp, end]) => grasp < time && time <= end);
+      if (square && k <= step && !this.times(one, square, step).some((time) => time > k)) found.set(keyOf(square), square);
+      for (const key of one.changes.keys()) {
+        const other = key.split(",").map(Number), times = this.times(one, other, step);
+        const free = times.findLastIndex((time) => one.settled.get(`${key},${time}`) === false);
+        if (free >= 0 && this.at(one, other, step) && times.slice(free + 1).every(inSpells)) found.set(key, other);
+      }
+      return [...found.values()];
+    }
+
+    // Squares in which all of the thing of a touch began, and in which all of it lies at a step; without a touch those of the robot.
+    extent(one, touch, step) {
+      if (!touch) return { began: [[0, 0]], lies: [one.squares[step]] };
+      const began = this.piece(one, touch), [k] = touch;
+      if (k > step || one.held[k].length || began.some((square) => this.times(one, square, k).length > 1)) return { began: [], lies: [] };
+      let lies = new Map(began.map((square) => [keyOf(square), square]));
+      for (const { end, square } of this.grasps(one, k, step)) {
+        if (!square || !lies.has(keyOf(square))) continue;
+        const isTaken = this.covered(one, touch, end).some((other) => !lies.has(keyOf(other)));
+        lies = new Map([...(isTaken ? [] : lies), ...one.held[end].map((other) => [keyOf(other), other])]);
+      }
+      const part = this.flooded(one, this.covered(one, touch, step), step), inPart = new Set(part.map(keyOf)), isBounded = part.length > 0 && part.length <= MAX_SQUARES;
+      return { began, lies: [...lies.values()].filter((square) => this.at(one, square, step) !== false && (!isBounded || inPart.has(keyOf(square)))) };
+    }
+
+    // Whether all of the thing of a touch, or of the robot, began in one of the rooms of a door and is in the other.
+    throughDoor(one, frames, touch, step) {
+      if (frames.length !== 3 || !frames.every((frame) => Array.isArray(frame) && frame.length === 4 && frame.every(Number.isInteger))) return false;
+      const sizes = frames.map(([w, s, e, n]) => [e - w + 1, n - s + 1]);
+      if (sizes.some((size) => Math.min(...size) < 1 || size[0] * size[1] > MAX_SQUARES)) return false;
+      const { began, lies } = this.extent(one, touch, step);
+      const within = ([w, s, e, n]) => ([i, j]) => w <= i && i <= e && s <= j && j <= n;
+      const isAllIn = (squares, frame) => squares.length > 0 && squares.every(within(frame));
+      const [door, ...rooms] = frames;
+      if (![rooms, [...rooms].reverse()].some(([first, last]) => isAllIn(began, first) && isAllIn(lies, last))) return false;
+      const squares = new Map();
+      for (const [w, s, e, n] of frames) for (let i = w; i <= e; i += 1) for (let j = s; j <= n; j += 1) squares.set(keyOf([i, j]), [i, j]);
+      const trodden = new Set([...began, ...one.squares.slice(0, step + 1)].map(keyOf));
+      const hidden = [...squares].filter(([key, square]) => !trodden.has(key) && !this.wasFree(one, square)).map(([, square]) => square);
+      if (squares.size > MAX_SQUARES || !this.flooded(one, hidden, step).every((square) => squares.has(keyOf(square)))) return false;
+      const beganIn = new Set(began.map(keyOf)), liesIn = new Set(lies.map(keyOf));
+      const isWall = (square) => (one.settled.get(`${keyOf(square)},0`) === true && !beganIn.has(keyOf(square)))
+        || (this.at(one, square, step) === true && !liesIn.has(keyOf(square)));
+      return AXES.some((a) => { // the door leads along this axis
+        const b = 1 - a, [before, after] = rooms[0][a] < door[a] ? rooms : [rooms[1], rooms[0]], wide = door[b + 2] - door[b] + 1;
+        if (before[a + 2] + 1 !== door[a] || after[a] - 1 !== door[a + 2]) return false;
+        if (!rooms.every((room) => room[b] <= door[b] && door[b + 2] <= room[b + 2] && AXES.every((c) => room[c + 2] - room[c] + 1 >= 2 * wide))) return false;
+        let walled = 0;
+        for (let x = door[a]; x <= door[a + 2]; x += 1) if ([door[b] - 1, door[b + 2] + 1].every((y) => isWall(a === 0 ? [x, y] : [y, x]))) walled += 1;
+        return walled > 0 && door[a + 2] - door[a] + 1 - walled < 2 * wide;
+      });
     }
 
     atCorner(one, step, [a, b]) {
@@ -427,9 +495,10 @@ const checkCertificate = (() => {
   function goalOf(text) {
     const [, word, goal] = /^(first|then|prefer)\((.*)\)$/.exec(text) || [null, "", text];
     const corner = /^at\(utak,corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\(([a-z]\w*),([a-z]\w*)\)$/.exec(goal);
-    const [, leaves] = /^in\((\w+),room\(next\)\)$/.exec(goal) || /^through\((\w+),\w+\)$/.exec(goal) || [];
+    const [, leaves, door] = /^in\((\w+),room\(next\)\)$/.exec(goal) || /^through\((\w+),(\w+)\)$/.exec(goal) || [];
+    if (leaves) return { text, word, kind: "room", what: leaves, leaves, objects: leaves === "utak" ? [] : [leaves], door };
     if (corner && corner[1] in CORNERS) return { text, word, kind: "corner", what: "utak", of: corner[1], objects: [] };
-    if (!thing || (thing[1] === "circled" && thing[2] !== "utak") || (thing[1] !== "at" && thing[3] === "start")) return { text, word, kind: null, leaves };
+    if (!thing || (thing[1] === "circled" && thing[2] !== "utak") || (thing[1] !== "at" && thing[3] === "start")) return { text, word, kind: null };
     const [, relation, what, of] = thing, kind = of === "start" ? "start" : relation === "circled" ? "circled" : what === "utak" ? "felt" : "near";
     return { text, word, kind, what, of, objects: [what, of].filter((name) => name !== "utak" && name !== "start") };
   }
@@ -476,7 +545,13 @@ const checkCertificate = (() => {
       if (staged) before = step;
       goal.step = step;
     });
-    const given = checkMeaning(meaning, episode, [...new Set(shown.flatMap(({ objects }) => objects))]);
+    const given = checkMeaning(meaning, episode, [...new Set(shown.flatMap(({ objects }) => objects))]), rooms = shown.filter(({ kind }) => kind === "room");
+    for (const { door } of rooms) {
+      if (!door) continue;
+      need(episode.header.task.parameters[door] === "door", `${door} is no door of the task`);
+      for (const fact of claimsOf(episode.header.task, [[door, null]])) if (!given.includes(fact)) given.push(fact);
+    }
+    if (rooms.length) given.push("verge(walls)", "isolated(things)", "parted(rooms)");
     for (const { kind, of, step, text } of shown) need(kind !== "felt" || meaning[of][0] === step, `${text} is not felt at its step`);
     return { given, shown };
   }
@@ -492,7 +567,7 @@ const checkCertificate = (() => {
   // Whether a case shows a goal; frame : what stands behind the word `holds`.
   function shows(world, one, { kind, what, of, step }, meaning, frame) {
     if (kind === "shut") return world.shutIn(one, frame, meaning[of]);
-    if (frame.length) return false;
+    if (kind === "room") return world.throughDoor(one, frame, meaning[what], step);
     const covered = (name) => world.covered(one, meaning[name], step);
     if (kind === "start") return (what === "utak" ? [one.squares[step]] : covered(what)).some((square) => same(square, [0, 0]));
     if (kind === "near") return covered(what).some(([i, j]) => covered(of).some(([x, y]) => Math.abs(x - i) <= 1 && Math.abs(y - j) <= 1));
@@ -556,9 +631,10 @@ const checkCertificate = (() => {
     need(Array.isArray(cases) && (cases.length === 0) === simple, simple ? "touches show these goals, and no cases" : "cases are missing");
     let shown = [];
     if (!simple) {
+      const isFramed = wanted.shown.some(({ kind }) => kind === "shut" || kind === "room");
       const why = foreign(episode), world = new World(episode);
       need(why === null, why);
-      shown = readCases(cases, world, along ? 1 : 90, (one, frame) => wanted.shown.every((goal) => shows(world, one, goal, meaning, frame)));
+      shown = readCases(cases, world, along ? 1 : 90, (one, frame) => (frame.length > 0) === isFramed && wanted.shown.every((goal) => shows(world, one, goal, meaning, frame)));
     }
     const touches = Object.entries(meaning).map(([name, touch]) => ({ name, touch, offset: TOUCHES[touch[1]] }));
     return { accepted: true, says: `${claim}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };

@@ -8,7 +8,7 @@ function drawnCase({ shown }, header) {
 }
 
 // What a checked certificate settles: squares that are occupied (crossed) or free (dotted), those felt as verge (framed), the
-// frame that shuts something in, where the robot stands at the step, and squares that the things of the goals cover for sure.
+// frame that shuts something in, or a door and the rooms that it joins, where the robot stands at the step, and squares that the things of the goals cover for sure.
 function drawCertificate(at, checked) {
   const group = svg("g", { class: "certificate" }), { header, utak } = at.episode, one = drawnCase(checked, header);
   const middle = (step) => utak[step].map((value) => Math.floor(value) + MIDDLE_OF_SQUARE), heading = header.world.heading;
@@ -21,8 +21,9 @@ function drawCertificate(at, checked) {
     add("settled-occupied", squares(settled(true), place), "settled: occupied");
     add("settled-verge", squares(one.verge, place), "felt: verge");
     const [[west, east], [south, north]] = one.places[at.step].map((bounds) => bounds.map((value) => value - MIDDLE_OF_SQUARE));
-    const [low, bottom, high, top] = one.frame.map((number) => number - MIDDLE_OF_SQUARE); // the inner edge of its squares
-    if (one.frame.length) add("settled-frame", pathOf([[[low + 1, bottom + 1], [high, bottom + 1], [high, top], [low + 1, top]]], place, true), "this frame shuts it in");
+    const rectangles = Array.isArray(one.frame[0]) ? one.frame : one.frame.length ? [[0, 1, 2, 3].map((k) => one.frame[k] + (k < 2 ? 1 : -1))] : []; // within a frame
+    const corners = ([w, s, e, n]) => [[w, s], [e + 1, s], [e + 1, n + 1], [w, n + 1]].map((corner) => corner.map((number) => number - MIDDLE_OF_SQUARE));
+    if (rectangles.length) add("settled-frame", pathOf(rectangles.map(corners), place, true), rectangles.length > 1 ? "a door, and the rooms that it joins" : "this frame shuts it in");
     for (const { name, touch } of checked.touches) add("settled-thing", squares(one.covered(touch, at.step), place), shown(`${name} covers this for sure`));
     add("settled-place", pathOf([[[west, south], [east, south], [east, north], [west, north]]], place, true), "the robot stands in here for sure");
   } else for (const { name, touch: [step], offset } of checked.touches) {

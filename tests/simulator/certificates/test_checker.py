@@ -307,7 +307,9 @@ def test_of_other_goals_nothing_shows_that_they_are_impossible(tmp_path: Path) -
     assert "of goals of the episode that certificates show" in refused(found, stated)
 
 
-@pytest.mark.parametrize("goal", ["in(utak,room(next))", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"])
+@pytest.mark.parametrize(
+    "goal", ["in(utak,r)", "around(utak,corner)", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"]
+)
 def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
     found = walk(tmp_path, ROOM, [], goal)
     assert "nothing is shown of" in refused(found, certificate(found, []))
