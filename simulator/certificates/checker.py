@@ -39,8 +39,8 @@ def goal_of(text: str, claim: str) -> Shown:
 
 def claims_taken(episode: Evidence, name: str, letter: str) -> list[str]:
     """Return what the task claims of a thing and a touch of this colour does not show."""
-    about = [fact for fact in episode.claims if re.search(rf"\b{name}\b", fact)]
-    return [fact for fact in about if fact != f"colour({name},{letter})"]
+    own = f"colour({name},{letter})"
+    return [fact for fact in episode.claims if re.search(rf"\b{name}\b", fact) and fact != own]
 
 
 def are_whole(values: Any, number: int) -> bool:
@@ -79,15 +79,14 @@ class CertificateCheck:
         named, doors = ([name for name in names if (self.episode.kinds[name] == "door") == k] for k in (0, 1))
         if not isinstance(self.meaning, dict) or list(self.meaning) != named:
             refuse("it must say what was felt of each thing that the goals name, and of no other")
-        taken, letters = dict[str, str](), list[str]()  # a claim: the name of the thing; colours
+        letters = dict.fromkeys(names, "")  # that were felt of things
         for name, felt in self.meaning.items():
             if self.episode.kinds.get(name) != "object" or not are_whole(felt, 2) or min(felt) < 0:
                 refuse(f"{name} is no object of the task, or what was felt is not named by a step and a touch")
-            letters.append(self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}"))
-            taken.update(dict.fromkeys(claims_taken(self.episode, name, letters[-1]), str(name)))
-        taken.update({fact: name for name in doors for fact in claims_taken(self.episode, name, "")})
+            letters[name] = self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}")
+        taken = {fact: name for name in named + doors for fact in claims_taken(self.episode, name, letters[name])}
         is_other = any(fact.startswith(f"colour({name},") for fact, name in taken.items())
-        if is_other or len({*letters, courses.VERGE_LETTER}) <= len(letters):
+        if is_other or len({courses.VERGE_LETTER, *map(letters.get, named)}) <= len(named):
             refuse("things of one colour may be one, or one is of another colour than the task claims, or verge")
         if any(goal[:2] == ("near", OWN_NAME) and self.meaning[goal[2]][0] != k for k, goal in self.timed):
             refuse("a thing was not felt at the step of its goal")
@@ -157,18 +156,15 @@ class CertificateCheck:
         unseen = {at for at in floor - began - {*case.squares[: step + 1]} if not case.was_free(at)}
         way = 1 if frames[0][0] - 1 in (frames[1][2], frames[2][2]) else -1  # it leads along the rows, or the columns
         (w, s, e, n), *sides = frames if way > 0 else [[s, w, n, e] for w, s, e, n in frames]
-        low, high = sorted(sides)
         beside = [[(i, j) if way > 0 else (j, i) for j in (s - 1, n + 1)] for i in range(w, e + 1)]
         walls = {at for pair in beside for at in pair if at not in began and case.occupied.get((*at, 0))}
         walls |= {at for pair in beside for at in pair if at not in lies and case.at(at, step)}
         walled = [walls.issuperset(pair) for pair in beside]  # each column or row of the door
-        is_joined = low[2] + 1 == w <= e == high[0] - 1 and all(one[1] <= s <= n <= one[3] for one in sides)
-        is_narrow = min(one[k + 2] - one[k] for one in sides for k in (0, 1)) > 2 * (n - s)
+        is_joined = any(low[2] + 1 == w <= e == high[0] - 1 for low, high in (sides, sides[::-1]))
+        fits = all(one[1] <= s <= n <= one[3] and min(one[2] - one[0], one[3] - one[1]) > 2 * (n - s) for one in sides)
         is_floor = len(floor) <= courses.MAX_SQUARES and case.spread(unseen, step) <= floor
         is_led = began and lies and any(began <= one and lies <= other for one, other in (rooms, rooms[::-1]))
-        return bool(
-            is_joined and is_narrow and is_floor and is_led and len(walled) > walled.count(False) < 2 * (n - s + 1)
-        )
+        return bool(is_joined and fits and is_floor and is_led and len(walled) > walled.count(False) < 2 * (n - s + 1))
 
     def is_corner(self, name: str, case: Course, step: int) -> bool:
         """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""

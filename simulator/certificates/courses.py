@@ -73,11 +73,9 @@ def under(east: int, north: int, angle: int) -> Spot | None:
 @cache
 def sampled(angle: int) -> list[tuple[dict[Spot, int], int]]:
     """Return of each field how often it samples each square, an offset, and how often it falls between two."""
-    fields = []
-    for east, north, side in FIELD_OFFSETS:
-        squares = [under(e, n, angle) for e in range(east, east + side) for n in range(north, north + side)]
-        fields.append((dict(Counter(square for square in squares if square)), squares.count(None)))
-    return fields
+    offsets = [product(range(east, east + side), range(north, north + side)) for east, north, side in FIELD_OFFSETS]
+    fields = [[under(e, n, angle) for e, n in field] for field in offsets]
+    return [(dict(Counter(square for square in field if square)), field.count(None)) for field in fields]
 
 
 def parsed(text: str) -> Any:
@@ -105,19 +103,14 @@ class Evidence:
         self.last = len(steps) - 1
         if [row["step"] for row in steps] != list(range(len(steps))) or {*map(len, self.touches)} != {len(TOUCH_NAMES)}:
             raise ValueError("its steps are not whole")
-        self.vectors = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
-        self.parts = lcm(*(number.denominator for vector in self.vectors for number in vector))
-        self.unit = 2 * PLACE_PARTS * DIRECTION_SCALE * self.parts  # a square: all lengths are whole numbers
+        ways = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
+        parts = 2 * PLACE_PARTS * lcm(*(number.denominator for way in ways for number in way))
+        self.ways = [(int(east * parts), int(north * parts)) for east, north in ways]  # of commands, robot frame
+        self.unit = DIRECTION_SCALE * parts  # a square: all lengths are whole numbers
         self.error = self.unit // PLACE_PARTS
         self.hindrance = [key for key in ("forked", "changes") if key in head]  # axiom 3
         self.hindrance += [key for key, usual in (("noise", 0), ("kb", [])) if head["options"][key] != usual]
         self.hindrance += ["disturbed"] * any("disturbed" in row for row in steps)
-
-    def motion(self, step: int, angle: int) -> Span:
-        """Return the vector of a command, map frame."""
-        east, north = (int(number * self.parts) for number in self.vectors[step])
-        x, y = turned(east, north, angle)
-        return x * 2 * PLACE_PARTS, y * 2 * PLACE_PARTS
 
 
 def common(one: Span, other: Span) -> Span:
@@ -163,8 +156,7 @@ class Course(NamedTuple):
 
     def key(self, square: Spot, step: int) -> Key:
         """Return the key of what a square is at a step."""
-        changes = self.changes.get(square)
-        return *square, next((k for k in reversed(changes) if k <= step), 0) if changes else 0
+        return *square, next((k for k in reversed(self.changes.get(square, ())) if k <= step), 0)
 
     def at(self, square: Spot, step: int) -> bool | None:
         """Return whether a square is occupied at a step; None where that is not settled."""
@@ -180,7 +172,8 @@ class Course(NamedTuple):
         unit, error, here, place = episode.unit, episode.error, self.squares[-1], self.places[-1]
         held = frozenset(square for square in self.held[-1] if self.at(square, self.step) is not False)
         word, found = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]]()
-        vector = episode.motion(self.step + 1, self.angle) if word == ("push" if held else "move") else (0, 0)
+        is_led = word == ("push" if held else "move")
+        vector = turned(*episode.ways[self.step + 1], self.angle) if is_led else (0, 0)  # map frame
         if held and word not in ("push", "release"):
             refuse(f"step {self.step + 1}: what may be held is not pushed or released")
         if not any(vector):
@@ -260,10 +253,9 @@ class Course(NamedTuple):
         low = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight < 0))
         high = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight > 0))
         for key, weight in [(key, weight) for key, weight in weights.items() if key not in self.occupied and weight]:
-            if low + abs(weight) > most:  # it counts as little as it can
-                self.occupied[key] = weight < 0
-            elif high - abs(weight) < least:  # as much as it can
-                self.occupied[key] = weight > 0
+            is_least = low + abs(weight) > most  # it counts as little as it can, else as much
+            if is_least or high - abs(weight) < least:
+                self.occupied[key] = is_least == (weight < 0)
         return low > most or high < least
 
     def was_free(self, square: Spot) -> bool:
