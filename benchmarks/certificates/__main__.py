@@ -2,9 +2,11 @@
 
 python -m benchmarks.certificates --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --rooms --count 100 --seed 0 --mutants 20
+python -m benchmarks.certificates --doors --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --impossible --count 4 --seed 0 -o FILE
 
-Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out. Each
+Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out; with
+--doors, walks and pushes through doors, and through what looks like one, claim to have led into the next room. Each
 that a certificate is found for is held against the truth, and so are mutants of the certificate that are accepted.
 Where none is found one is forged, for a checker that takes any goal to hold, and is held, with mutants of it, against
 the checker as it is. Whether the rules allow what really happened is asked of all. The exit code is 1 when an accepted
@@ -24,17 +26,21 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks.certificates.doors import drawn_doors
 from benchmarks.certificates.drawn import drawn_walk
 from benchmarks.certificates.gaps import drawn_room, gets_out, meets_corners
 from benchmarks.certificates.mutants import mutants
 from benchmarks.certificates.recorded import RecordedWalk
 from benchmarks.certificates.truth import holds, is_given, lost_truth
 from benchmarks.certificates.unable import run_unable
+from utak.simulator.certificates import search
 from utak.simulator.certificates.checker import OWN_NAME, CertificateCheck, goal_of, verify
 from utak.simulator.certificates.courses import RefusedError
+from utak.simulator.certificates.doors import door_shown
 from utak.simulator.certificates.search import NoCertificateError, certificate_of
 
 FALSE = "FALSE"  # of a claim that was accepted
+BARE_DOOR = [[3, -1, 3, 0], [-1, -2, 2, 2], [4, -2, 7, 2]]  # of a forged certificate, before it is changed at random
 
 
 def main() -> int:
@@ -43,6 +49,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--rooms", action="store_true", help="rooms that nothing gets out of, in place of goals done")
+    parser.add_argument("--doors", action="store_true", help="goals of the next room, in place of others")
     parser.add_argument("--truth-alone", action="store_true", help="only whether the rules allow what happened")
     parser.add_argument("--mutants", type=int, default=0, help="of each certificate")
     parser.add_argument("--impossible", action="store_true", help="runs in which the task cannot be done")
@@ -53,7 +60,7 @@ def main() -> int:
     counts: Counter[str] = Counter()
     times: dict[str, list[float]] = {"found in": [], "checked in": [], "kilobytes": []}
     for seed in range(options.seed, options.seed + options.count):
-        walk = (drawn_room if options.rooms else drawn_walk)(seed)
+        walk = (drawn_room if options.rooms else drawn_doors if options.doors else drawn_walk)(seed)
         if lost := lost_truth(walk):
             counts[f"{FALSE}: what happened is excluded"] += 1
             print(seed, "what happened is excluded:", lost, flush=True)
@@ -96,7 +103,7 @@ def _count_forged(walk: RecordedWalk, claim: str, seed: int, number: int, counts
     """Count what becomes of a certificate that was made for a checker that takes every goal to hold, and of mutants."""
     forging = dict.fromkeys(("is_shown", "is_barred", "holds"), lambda *_: True)
     try:
-        with patch.multiple(CertificateCheck, **forging):
+        with patch.multiple(CertificateCheck, **forging), patch.object(search, "door_shown", _forged_door):
             stated = json.loads(certificate_of(walk.text.splitlines(keepends=True), claim))
     except NoCertificateError:
         return
@@ -107,9 +114,14 @@ def _count_forged(walk: RecordedWalk, claim: str, seed: int, number: int, counts
             print(seed, "forged, and accepted:", walk.goals, mutant["meaning"], mutant["given"], flush=True)
 
 
+def _forged_door(*about: Any, step: int | None = None) -> list[list[int]]:
+    """Return the first door that was seen, whatever lies behind it, or one that is none."""
+    return door_shown(*about, step=step) or BARE_DOOR
+
+
 def _outcome(walk: RecordedWalk, stated: dict[str, Any]) -> str:
     """Return whether the claim of a certificate is true, in words."""
-    if not is_given(walk, stated["given"]):
+    if not is_given(walk, stated["given"], stated["cases"]):
         return "given is false"
     goal = walk.goals[0]
     if stated["claim"] == "done":

@@ -4,20 +4,20 @@ docs/certificates.md is the format, and all that is taken for granted. This modu
 ours, search nothing, compare no floats, and read neither beliefs nor the truth of an episode.
 """
 
-import json
 import re
 from itertools import count, pairwise, product
 from math import isqrt
 from typing import Any
 
 from utak.simulator.certificates import courses
-from utak.simulator.certificates.courses import VERGE_LETTER, Course, Evidence, Span, Spot, Spots, refuse, spread
+from utak.simulator.certificates.courses import Course, Evidence, Span, Spot, Spots, refuse, spread
 
 KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "cases")
 GOAL = re.compile(r"(?:(first|then)\()?(\w+)\((\w+),(?:corner\((\w+)\)|(room\(next\)|\w+))\)(?(1)\))")
-DONE_GOALS = {"at corner()": "corner", "at start": "start", "at ": "near", "beside ": "near", "circled ": "circled"}
 BARRED_GOALS = {"at corner()": "corner", "in room(next)": "room", "through ": "room"}
-GOAL_KINDS = {"done": DONE_GOALS, "impossible": BARRED_GOALS}
+OTHER_GOALS = {"at start": "start", "at ": "near", "beside ": "near", "circled ": "circled"}
+GOAL_KINDS = {"done": BARRED_GOALS | OTHER_GOALS, "impossible": BARRED_GOALS}
+OF_DOORS = ["verge(walls)", "isolated(things)", "parted(rooms)"]  # given, of `done` of such a goal
 OF_WALLS, OF_THINGS = ["whole(squares)", "isolated(things)"], ["apart(things)"]  # given, of `impossible`
 ALONG_GRID = "along(grid)"  # given: the robot's axes lie along the squares, so only the angle 0 is treated
 RIGHT_ANGLE = 90  # degrees: a quarter turn of the grid of squares is the same grid
@@ -33,7 +33,8 @@ def goal_of(text: str, claim: str) -> Shown:
     kind = GOAL_KINDS[claim].get(f"{word} {place}")
     if not kind or (claim == "done" and kind in ("corner", "circled") and what != OWN_NAME):
         refuse(f"nothing is shown of {text}")
-    return kind, what, corner or (name if kind in ("near", "circled") else ""), order or ""
+    is_named = kind in ("near", "circled") or (claim == "done" and word == "through")
+    return kind, what, corner or (name if is_named else ""), order or ""
 
 
 def blocks(squares: Spots, size: int) -> Spots:
@@ -94,24 +95,29 @@ class CertificateCheck:
         ordered = [k for k, goal in self.timed if goal[3]]
         if ordered != sorted(ordered) or any(k != self.last for k, goal in self.timed if not goal[3]):
             refuse("its steps are not in the order of the task, or a goal does not hold at the end")
-        taken, walls = self.check_meaning(), OF_WALLS + OF_THINGS * bool(self.meaning)
-        granted = [taken, taken + walls][: 1 + (self.claim == "impossible")]
+        self.has_door = self.claim == "done" and any(goal[0] == "room" for goal in self.goals)
+        taken, walls = self.check_meaning() + OF_DOORS * self.has_door, OF_WALLS + OF_THINGS * bool(self.meaning)
+        granted = [taken, taken + walls] if self.claim == "impossible" else [taken]
         if self.given not in [one + grid for one in granted for grid in ([], [ALONG_GRID])]:
-            refuse(f"what it is given must be {json.dumps(granted[-1])}, and perhaps {ALONG_GRID}")
+            refuse(f"what it is given must be {granted[-1]}, and perhaps {ALONG_GRID}")
 
     def check_meaning(self) -> list[str]:
         """Return the claims of the task about things that are taken to be so; refuse unless each thing was felt."""
-        named = dict.fromkeys(name for _, *names, _ in self.goals for name in names if name in self.episode.kinds)
-        if not isinstance(self.meaning, dict) or list(self.meaning) != list(named):
+        doors = dict.fromkeys(name for kind, _, name, _ in self.goals if kind == "room" and name)
+        others = [goal[1 : 3 if goal[0] in ("near", "circled") else 2] for goal in self.goals]
+        things = dict.fromkeys(name for names in others for name in names if name != OWN_NAME)
+        if not isinstance(self.meaning, dict) or list(self.meaning) != list(things):
             refuse("it must say what was felt of each thing that the goals name, and of no other")
-        taken, letters = dict[str, str](), list[str]()  # a claim: the name of the thing; colours
+        letters = dict.fromkeys([*things, *doors], "")  # that were felt of things
         for name, felt in self.meaning.items():
-            if self.episode.kinds.get(name) != "object" or not are_whole(felt, 2) or min(felt) < 0:
-                refuse(f"{name} is no object of the task, or what was felt is not named by a step and a touch")
-            letters.append(self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}"))
-            taken.update(dict.fromkeys(claims_taken(self.episode, name, letters[-1]), str(name)))
-        other = any(fact.startswith(f"colour({name},") for fact, name in taken.items())  # than the task claims
-        if len({*letters, VERGE_LETTER}) <= len(letters) or other:
+            if not are_whole(felt, 2) or min(felt) < 0:
+                refuse(f"what was felt of {name} is not named by a step and a touch")
+            letters[name] = self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}")
+        if any(self.episode.kinds.get(name) != ("door" if name in doors else "object") for name in letters):
+            refuse("a goal names something that is no object, or no door, of the task")
+        taken = {fact: name for name, letter in letters.items() for fact in claims_taken(self.episode, name, letter)}
+        is_other = any(fact.startswith(f"colour({name},") for fact, name in taken.items())
+        if is_other or len({courses.VERGE_LETTER, *map(letters.get, things)}) <= len(things):
             refuse("two things of one colour may be one, or one is of another colour than the task claims, or verge")
         if any(goal[:2] == ("near", OWN_NAME) and self.meaning[goal[2]][0] != k for k, goal in self.timed):
             refuse("a thing was not felt at the step of its goal")
@@ -140,7 +146,7 @@ class CertificateCheck:
                 case = None if case.settle(self.episode, args) else case
             elif word == "replay" and case and not args:
                 case = case.replayed(self.episode)
-            elif args == [] and word == "holds" and case and case.step == self.last and self.is_shown(case):
+            elif word == "holds" and case and case.step == self.last and self.is_shown(case, args):
                 case, shown = None, shown + 1
             elif word == "angle" and not case and not left and repr(args) == f"[{angle + 1}]" and angle + 1 < angles:
                 angle, case = angle + 1, courses.waking_case(angle + 1, self.episode)
@@ -156,35 +162,63 @@ class CertificateCheck:
         if case or left or angle != angles - 1 or not shown:
             refuse("it ends before all cases are treated, or the episode agrees with no world")
 
-    def is_shown(self, case: Course) -> bool:
-        """Return whether a case shows that the goals hold, or that they cannot."""
-        return self.is_barred(case) if self.claim != "done" else all(self.holds(g, case, k) for k, g in self.timed)
+    def is_shown(self, case: Course, door: list[Any]) -> bool:
+        """Return whether a case shows that the goals hold, those of rooms by a door, or that they cannot."""
+        if self.claim == "impossible":
+            return door == [] and self.is_barred(case)
+        return bool(door) == self.has_door and all(self.holds(goal, case, step, door) for step, goal in self.timed)
 
-    def holds(self, goal: Shown, case: Course, step: int) -> bool:
-        """Return whether a goal holds at a step of a case for sure."""
+    def felt(self, what: str) -> Spot | None:
+        """Return the touch that felt what a goal is about; None for the robot."""
+        return None if what == OWN_NAME else self.meaning[what]
+
+    def holds(self, goal: Shown, case: Course, step: int, door: list[Any]) -> bool:
+        """Return whether a goal holds at a step of a case for sure, one of rooms by a door and the rooms beside it."""
         kind, what, name, _ = goal
+        if kind == "room":
+            return len(door) == 3 and all(are_whole(one, 4) for one in door) and self.is_next(what, case, step, door)
         if kind == "circled":
             return self.is_circled(name, case, step)
         if kind == "near" and what == OWN_NAME:
             return True
-        covered = {case.squares[step]} if what == OWN_NAME else case.covered(self.episode, self.meaning[what], step)
+        covered = case.covered(self.episode, self.felt(what), step)
         if kind == "near":
             pairs = product(covered, case.covered(self.episode, self.meaning[name], step))
             return any(max(abs(i - a), abs(j - b)) <= 1 for (i, j), (a, b) in pairs)
         return (0, 0) in covered if kind == "start" else self.is_corner(name, case, step)
+
+    def is_next(self, what: str, case: Course, step: int, frames: list[list[int]]) -> bool:
+        """Return whether what began in one of two rectangles of floor that a door joins lies in the other."""
+        began, lies = case.extent(self.episode, self.felt(what), step)
+        door, *rooms = (Spots(courses.touched(((w, e + 1), (s, n + 1)), 1)) for w, s, e, n in frames)
+        floor = door.union(*rooms)
+        unseen = {at for at in floor - began - {*case.squares[: step + 1]} if not case.was_free(at)}
+        way = 1 if frames[0][0] - 1 in (frames[1][2], frames[2][2]) else -1  # it leads along the rows, or the columns
+        (w, s, e, n), *sides = frames if way > 0 else [[s, w, n, e] for w, s, e, n in frames]
+        beside = [[(i, j) if way > 0 else (j, i) for j in (s - 1, n + 1)] for i in range(w, e + 1)]
+        walls = {at for pair in beside for at in pair if at not in began and case.occupied.get((*at, 0))}
+        walls |= {at for pair in beside for at in pair if at not in lies and case.at(at, step)}
+        walled = [walls.issuperset(pair) for pair in beside]  # each column or row of the door
+        is_joined = any(low[2] + 1 == w <= e == high[0] - 1 for low, high in (sides, sides[::-1]))
+        fits = all(one[1] <= s <= n <= one[3] and min(one[2] - one[0], one[3] - one[1]) > 2 * (n - s) for one in sides)
+        is_floor = len(floor) <= courses.MAX_SQUARES and case.unsettled(unseen, step) <= floor
+        is_led = began and lies and any(began <= one and lies <= other for one, other in (rooms, rooms[::-1]))
+        return bool(is_joined and fits and is_floor and is_led and len(walled) > walled.count(False) < 2 * (n - s + 1))
 
     def is_corner(self, name: str, case: Course, step: int) -> bool:
         """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""
         u, v = towards = courses.turned(*CORNERS[name], case.angle)  # map frame
         i, j = here = case.squares[step]
         ahead = (i + (1 if u > 0 else -1), j), (i, j + (1 if v > 0 else -1))
-        is_in = u and v and case.was_free(here) and all(case.at(at, step) and at not in case.held[step] for at in ahead)
-        for (k, field), (_, most) in self.episode.ranges.items() if is_in else ():  # does it show floor further on?
+        is_shut = all(case.at(at, step) and at not in case.held[step] for at in ahead)
+        if not (u and v and is_shut and case.was_free(here)):
+            return False
+        for (k, field), (_, most) in self.episode.ranges.items():  # does it show floor further on?
             (p, q), squares = case.squares[min(k, step)], courses.sampled(case.angle)[field][0]
             further = sum(n for (c, d), n in squares.items() if reach(towards, (p + c, q + d)) > reach(towards, here))
             if k <= step and further > most:
                 return False
-        return bool(is_in) and all(reach(towards, at) <= reach(towards, here) for at in case.squares[: step + 1])
+        return all(reach(towards, at) <= reach(towards, here) for at in case.squares[: step + 1])
 
     def is_circled(self, name: str, case: Course, step: int) -> bool:
         """Return whether the track ends in the square where it began, which is free, and winds about a thing."""
@@ -196,9 +230,8 @@ class CertificateCheck:
         x, y = ((2 * number + 1) * self.episode.unit for number in thing)
         winding = 0
         for (x0, y0), (x1, y1) in pairwise([*track, track[0]]):
-            if (y0 <= y) != (y1 <= y):
-                left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
-                winding += (left > 0 and y1 > y0) - (left < 0 and y1 < y0)
+            left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
+            winding += (y0 <= y < y1 and left > 0) - (y1 <= y < y0 and left < 0)
         return winding != 0 and case.at((0, 0), step) is False
 
     def is_barred(self, case: Course) -> bool:
@@ -216,12 +249,14 @@ class CertificateCheck:
         """Return the floor that what holds a square of a size never leaves; none where it may."""
         touches = enumerate(self.episode.touches[: case.step + 1])
         felt = {case.touch(k, touch): letter for k, row in touches for touch, letter in enumerate(row)}
-        verge = {at for at, letter in felt.items() if at and letter == VERGE_LETTER}
+        verge = {at for at, letter in felt.items() if at and letter == courses.VERGE_LETTER}
         ways = [(i, j, a, b, n) for i, j in verge for a, b in ((1, 0), (0, 1)) for n in range(1, size + 1)]
         gaps = [(i, j, a, b, n) for i, j, a, b, n in ways if (i + a * n, j + b * n) in verge]
         barred = verge.union((i + a * k, j + b * k) for i, j, a, b, n in gaps for k in range(n))
         floor = spread(within, lambda at: at not in barred)
-        known = {at for at in floor if felt.get(at, VERGE_LETTER) != VERGE_LETTER or case.was_free(at)}
+        if len(floor) > courses.MAX_SQUARES:
+            refuse("nothing bounds the floor")
+        known = {at for at in floor if felt.get(at, courses.VERGE_LETTER) != courses.VERGE_LETTER or case.was_free(at)}
         deep = blocks(floor, 3)
         return floor if all((i - 1, j - 1) in deep for i, j in floor - known) else Spots()
 

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
     GOAL_KINDS,
+    OF_DOORS,
     OF_THINGS,
     OF_WALLS,
     OWN_NAME,
@@ -38,6 +39,7 @@ from utak.simulator.certificates.courses import (
     sampled,
     waking_case,
 )
+from utak.simulator.certificates.doors import door_shown
 
 MAX_CASES = 20000  # that are tried; a bound on time
 StatedLine = list[Any]
@@ -164,7 +166,8 @@ def _likely_steps(checker: CertificateCheck, case: Course, stated: list[int]) ->
     ordered = [number for number, goal in enumerate(checker.goals) if goal[3]]
     for number, goal in enumerate(checker.goals):
         tried = range(earliest, last) if number in ordered[:-1] else range(0)
-        found = next((k for k in (*tried, last) if checker.holds(goal, case, k)), None)
+        shows = (k for k in (*tried, last) if goal[0] == "room" or checker.holds(goal, case, k, []))
+        found = next((k for k in shows if goal[0] != "room" or door_shown(checker, case, step=k)), None)
         if found is None:
             raise RefusedError(f"nothing shows {checker.texts[number]}")
         earliest = found if number in ordered else earliest
@@ -190,7 +193,9 @@ def _meanings(episode: Evidence, claim: str, steps: list[int | None], goals: lis
     felt: dict[str, list[StatedLine]] = {}
     for kind, what, name, _ in goals:
         if what != OWN_NAME:
-            felt.setdefault(what, _touches(episode, what, "grasp" if claim == "done" else "any"))
+            touches = _touches(episode, what, "grasp" if claim == "done" else "any")
+            is_led = claim == "done" and kind == "room"
+            felt.setdefault(what, touches[::-1] if is_led else touches)  # of what was led: from where it began
         if kind in ("near", "circled"):
             is_near = kind == "near" and what == OWN_NAME
             if is_near or name not in felt:
@@ -200,8 +205,11 @@ def _meanings(episode: Evidence, claim: str, steps: list[int | None], goals: lis
         letters = {name: episode.touches[step][touch] for name, (step, touch) in means.items()}
         if len(set(letters.values())) < len(letters):
             continue
-        taken = [fact for name, letter in letters.items() for fact in claims_taken(episode, name, letter)]
+        named = letters | {door: "" for kind, _, door, _ in goals if kind == "room" and door}
+        taken = [fact for name, letter in named.items() for fact in claims_taken(episode, name, letter)]
         given = list(dict.fromkeys(taken))
+        if claim == "done" and any(goal[0] == "room" for goal in goals):
+            given += OF_DOORS
         if claim == "impossible" and len(goals) == 1:
             given += OF_WALLS + (OF_THINGS if means else [])
         head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
@@ -232,6 +240,7 @@ class _Search:
 
     def __init__(self, episode: Evidence, checker: CertificateCheck) -> None:
         self.episode, self.checker = episode, checker
+        self.door: list[Any] = []  # that was shown last, with its rooms
         self.cases = 0
 
     def all_lines(self, certificate: dict[str, Any]) -> list[StatedLine]:
@@ -289,13 +298,15 @@ class _Search:
 
     def shown(self, case: Course) -> TreatedBranch:
         """Return the line that shows the goals; raises RefusedError where they may not hold."""
+        if self.checker.has_door:
+            self.door = door_shown(self.checker, case, self.door) or []
         facts = ReadFacts(case.occupied)
         case = case._replace(occupied=facts)
-        if not self.checker.is_shown(case):
+        if not self.checker.is_shown(case, self.door):
             raise RefusedError(
                 f"nothing shows the claim of {' and '.join(self.checker.texts)} in all that may have happened"
             )
-        return TreatedBranch([["holds"]], facts.read)
+        return TreatedBranch([["holds", *self.door]], facts.read)
 
 
 def settle_all(case: Course, episode: Evidence) -> tuple[list[UsefulCount], UsefulCount | None]:

@@ -7,8 +7,8 @@ function drawnCase({ shown }, header) {
   return shown.find(({ degrees }) => (header.world.heading - degrees) % 90 === 0) || shown[0];
 }
 
-// What a checked certificate settles: squares that are occupied (crossed) or free (dotted), those felt as verge (framed),
-// where the robot stands at the step, and squares that the things of the goals cover for sure; all at the last step of the cases where the step is later.
+// What a checked certificate settles: squares that are occupied (crossed) or free (dotted), those felt as verge (framed), a door
+// and the rooms that it joins, where the robot stands at the step, and squares that the things of the goals cover for sure; all at the last step of the cases where the step is later.
 function drawCertificate(at, checked) {
   const group = svg("g", { class: "certificate" }), { header, utak } = at.episode, one = drawnCase(checked, header);
   const middle = (step) => utak[step].map((value) => Math.floor(value) + MIDDLE_OF_SQUARE), heading = header.world.heading;
@@ -21,6 +21,8 @@ function drawCertificate(at, checked) {
     add("settled-occupied", squares(settled(true), place), "settled: occupied");
     add("settled-verge", squares(one.verge, place), "felt: verge");
     const [[west, east], [south, north]] = one.places[step].map((bounds) => bounds.map((value) => value - MIDDLE_OF_SQUARE));
+    const corners = ([w, s, e, n]) => [[w, s], [e + 1, s], [e + 1, n + 1], [w, n + 1]].map((corner) => corner.map((number) => number - MIDDLE_OF_SQUARE));
+    if (one.door.length) add("settled-door", pathOf(one.door.map(corners), place, true), "a door, and the rooms that it joins");
     for (const { name, touch } of checked.touches) add("settled-thing", squares(one.covered(touch, step), place), shown(`${name} covers this for sure`));
     add("settled-place", pathOf([[[west, south], [east, south], [east, north], [west, north]]], place, true), "the robot stands in here for sure");
   } else for (const { name, touch: [step], offset } of checked.touches) {
