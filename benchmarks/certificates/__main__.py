@@ -2,12 +2,17 @@
 
 python -m benchmarks.certificates --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --rooms --count 100 --seed 0 --mutants 20
+python -m benchmarks.certificates --doors --count 100 --seed 0 --mutants 20
+python -m benchmarks.certificates --impossible --count 4 --seed 0 -o FILE
 
-Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out. Each
+Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out; with
+--doors, walks and pushes through doors, and through what looks like one, claim to have led into the next room. Each
 that a certificate is found for is held against the truth, and so are mutants of the certificate that are accepted.
 Where none is found one is forged, for a checker that takes any goal to hold, and is held, with mutants of it, against
 the checker as it is. Whether the rules allow what really happened is asked of all. The exit code is 1 when an accepted
-claim is false, or when what happened is excluded.
+claim is false, or when what happened is excluded. With --impossible the robot runs in worlds in which its task cannot
+be done, so many of each kind, and those are counted in which a certificate shows that; worlds that the FILE has are not
+run again.
 """
 
 import argparse
@@ -15,24 +20,27 @@ import json
 import sys
 import time
 from collections import Counter
+from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks.certificates.doors import drawn_doors
 from benchmarks.certificates.drawn import drawn_walk
-from benchmarks.certificates.gaps import drawn_room, gets_out
+from benchmarks.certificates.gaps import drawn_room, gets_out, meets_corners
 from benchmarks.certificates.mutants import mutants
 from benchmarks.certificates.recorded import RecordedWalk
 from benchmarks.certificates.truth import holds, is_given, lost_truth
+from benchmarks.certificates.unable import run_unable
 from utak.simulator.certificates import search
 from utak.simulator.certificates.checker import OWN_NAME, CertificateCheck, goal_of, verify
 from utak.simulator.certificates.courses import RefusedError
+from utak.simulator.certificates.doors import door_shown
 from utak.simulator.certificates.search import NoCertificateError, certificate_of
 
 FALSE = "FALSE"  # of a claim that was accepted
-felt_frames = search._frames
-BARE_FRAME = [-3, -3, 3, 3]  # of a forged certificate, before it is changed at random
+BARE_DOOR = [[3, -1, 3, 0], [-1, -2, 2, 2], [4, -2, 7, 2]]  # of a forged certificate, before it is changed at random
 
 
 def main() -> int:
@@ -41,13 +49,18 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--rooms", action="store_true", help="rooms that nothing gets out of, in place of goals done")
+    parser.add_argument("--doors", action="store_true", help="goals of the next room, in place of others")
     parser.add_argument("--truth-alone", action="store_true", help="only whether the rules allow what happened")
     parser.add_argument("--mutants", type=int, default=0, help="of each certificate")
+    parser.add_argument("--impossible", action="store_true", help="runs in which the task cannot be done")
+    parser.add_argument("-o", "--output", type=Path, help="of --impossible: a JSON line for each world")
     options = parser.parse_args()
+    if options.impossible:
+        return run_unable(options.count, options.seed, options.output)
     counts: Counter[str] = Counter()
     times: dict[str, list[float]] = {"found in": [], "checked in": [], "kilobytes": []}
     for seed in range(options.seed, options.seed + options.count):
-        walk = (drawn_room if options.rooms else drawn_walk)(seed)
+        walk = (drawn_room if options.rooms else drawn_doors if options.doors else drawn_walk)(seed)
         if lost := lost_truth(walk):
             counts[f"{FALSE}: what happened is excluded"] += 1
             print(seed, "what happened is excluded:", lost, flush=True)
@@ -66,7 +79,7 @@ def _count(
     walk: RecordedWalk, claim: str, seed: int, number: int, counts: Counter[str], times: dict[str, list[float]]
 ) -> None:
     """Count what becomes of the certificate of a walk, of mutants of it, and of forged ones."""
-    lines, goal, begun = walk.text.splitlines(keepends=True), walk.goals[0], time.perf_counter()
+    lines, goal, begun = walk.text.splitlines(keepends=True), " ".join(walk.goals), time.perf_counter()
     try:
         text = certificate_of(lines, claim)
     except NoCertificateError:
@@ -88,9 +101,9 @@ def _count(
 
 def _count_forged(walk: RecordedWalk, claim: str, seed: int, number: int, counts: Counter[str]) -> None:
     """Count what becomes of a certificate that was made for a checker that takes every goal to hold, and of mutants."""
-    forging = {"is_shut_in": lambda *_: True, "holds": lambda *_: True}
+    forging = dict.fromkeys(("is_shown", "is_barred", "holds"), lambda *_: True)
     try:
-        with patch.multiple(CertificateCheck, **forging), patch.object(search, "_frames", _forged_frames):
+        with patch.multiple(CertificateCheck, **forging), patch.object(search, "door_shown", _forged_door):
             stated = json.loads(certificate_of(walk.text.splitlines(keepends=True), claim))
     except NoCertificateError:
         return
@@ -101,21 +114,24 @@ def _count_forged(walk: RecordedWalk, claim: str, seed: int, number: int, counts
             print(seed, "forged, and accepted:", walk.goals, mutant["meaning"], mutant["given"], flush=True)
 
 
-def _forged_frames(*about: Any) -> list[list[int]]:
-    """Return frames of felt verge, whatever they have in them, and one more."""
-    return [*felt_frames(*about), BARE_FRAME]
+def _forged_door(*about: Any, step: int | None = None) -> list[list[int]]:
+    """Return the first door that was seen, whatever lies behind it, or one that is none."""
+    return door_shown(*about, step=step) or BARE_DOOR
 
 
 def _outcome(walk: RecordedWalk, stated: dict[str, Any]) -> str:
     """Return whether the claim of a certificate is true, in words."""
-    if not is_given(walk, stated["given"]):
+    if not is_given(walk, stated["given"], stated["cases"]):
         return "given is false"
-    (goal,) = walk.goals
+    goal = walk.goals[0]
     if stated["claim"] == "done":
         return "true" if holds(walk, goal, stated["steps"][0], stated["meaning"]) else FALSE
-    what = goal_of(goal, "impossible")[1]
+    steps = zip(walk.goals, stated["steps"], strict=True)
+    told = [goal_of(goal, "impossible") for goal, step in steps if step is not None]
+    what = told[0][1]
     name = what if what == OWN_NAME else walk.felt(*stated["meaning"][what]) or ""
-    return {"yes": FALSE, "no": "true", "open": "not known to be false"}[gets_out(walk, name)]
+    answer = gets_out(walk, name) if told[0][0] == "room" else meets_corners(walk, name, [one[2] for one in told])
+    return {"yes": FALSE, "no": "true", "open": "not known to be false"}[answer]
 
 
 def _of_mutant(walk: RecordedWalk, mutant: dict[str, Any], origin: dict[str, Any] | None) -> str:

@@ -4,7 +4,9 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
+
+import shapely
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Command
@@ -14,6 +16,17 @@ from utak.simulator.run.embodiment import Embodiment
 from utak.simulator.world.physics import Tabletop
 from utak.simulator.world.table import project
 from utak.simulator.world.world import World
+
+
+class TrueRooms(NamedTuple):
+    """The rooms of a table, table frame."""
+
+    parts: tuple[shapely.Geometry, ...] = ()
+    doors: frozenset[tuple[int, int]] = frozenset()  # numbers of rooms that a door joins, the lesser first
+    are_parted: bool = True  # no door has one room on both sides
+
+
+ROOMLESS = TrueRooms()
 
 
 @dataclass(frozen=True)
@@ -27,6 +40,7 @@ class RecordedWalk:
     things: tuple[dict[str, Any], ...] = field(repr=False)  # the outlines of the movable things at each step
     held: tuple[str | None, ...]  # the name of what is held at each step
     touches: tuple[tuple[str | None, ...], ...] = field(repr=False)
+    rooms: TrueRooms = ROOMLESS
 
     def felt(self, step: int, touch: int) -> str | None:
         """Return the name of the thing that a touch felt."""
@@ -48,14 +62,15 @@ def recorded_walk(
     goals: Sequence[str],
     claims: Sequence[str] = (),
     parameters: Sequence[str] = ("x",),
+    doors: Sequence[str] = (),
 ) -> RecordedWalk:
-    """Return the episode of some commands; all `parameters` are objects."""
+    """Return the episode of some commands; all `parameters` are objects, and there may be `doors` besides."""
     table = Tabletop(world)
     body = Embodiment(table)
     task = {
         "goals": list(goals),
         "claims": [[claim, 100] for claim in claims],
-        "parameters": dict.fromkeys(parameters, "object"),
+        "parameters": dict.fromkeys(parameters, "object") | dict.fromkeys(doors, "door"),
     }
     rows = [{"utak": "episode", "version": 1, "options": {"noise": 0.0, "kb": []}, "task": task}]
     places, things, held, touches = [], [], [], []

@@ -2,9 +2,11 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+import shapely
 
 from benchmarks.certificates.recorded import RecordedWalk
 from utak.geometry.counts.retina import FIELDS
@@ -16,8 +18,10 @@ from utak.simulator.world.table import Table, project
 SLACK = 1e-5  # squares; what the checker allows for rounding
 
 
-def is_given(walk: RecordedWalk, given: Sequence[str]) -> bool:
+def is_given(walk: RecordedWalk, given: Sequence[str], cases: Sequence[Sequence[Any]] = ()) -> bool:
     """Return whether what is given is so; that verge lies nowhere within floor is so in all drawn worlds."""
+    if "parted(rooms)" in given and not walk.rooms.are_parted:
+        return False
     outlines = [walk.world.verge, *walk.things[0].values()]
     if "along(grid)" in given and walk.world.heading % 90 != 0:
         return False
@@ -25,6 +29,8 @@ def is_given(walk: RecordedWalk, given: Sequence[str]) -> bool:
         for outline in outlines:
             if abs(outline.area - project(outline).covered.sum()) > SLACK:
                 return False
+    if "verge(walls)" in given and not any(_has_walls(walk, door) for door in _true_doors(walk, cases)):
+        return False
     parts = [_covered(walk, name, 0) for name in walk.things[0]] if "apart(things)" in given else []
     pairs = itertools.combinations(parts, 2)
     return not any(
@@ -32,9 +38,53 @@ def is_given(walk: RecordedWalk, given: Sequence[str]) -> bool:
     )
 
 
+def _true_doors(walk: RecordedWalk, cases: Sequence[Sequence[Any]]) -> Iterator[Sequence[int]]:
+    """Yield the doors that the cases name in which the grid lies as it does."""
+    angle = 0
+    for word, *args in cases:
+        angle = args[0] if word == "angle" else angle
+        if word == "holds" and angle == walk.world.heading % 90:
+            yield args[0]
+
+
+def _has_walls(walk: RecordedWalk, door: Sequence[int]) -> bool:
+    """Return whether verge covers all of the squares on both sides of a door, along the rows or along the columns."""
+    found = []
+    for order in ((0, 1, 2, 3), (1, 0, 3, 2)):
+        w, s, e, n = (door[k] for k in order)
+        pairs = [[((i, j)[:: 1 if order[0] == 0 else -1]) for j in (s - 1, n + 1)] for i in range(w, e + 1)]
+        walled = [all(_is_verge(walk, at) for at in pair) for pair in pairs]
+        found.append(any(walled) and walled.count(False) < 2 * (n - s + 1))
+    return any(found)
+
+
+def _is_verge(walk: RecordedWalk, at: tuple[int, int]) -> bool:
+    """Return whether verge covers all of a square of the map frame."""
+    x, y = at
+    for _ in range(walk.world.heading // 90 % 4):
+        x, y = -y, x
+    i, j = _square(walk.places[0])
+    square = shapely.box(i + x, j + y, i + x + 1, j + y + 1)
+    table = shapely.box(0, 0, walk.world.width, walk.world.height)
+    return bool((square & table).difference(walk.world.verge).area < SLACK)
+
+
+def _is_in_next_room(walk: RecordedWalk, thing: str | None, step: int) -> bool:
+    """Return whether all of a thing, or of the robot, began in a room and is in one next to it."""
+    began, is_now = (shapely.Point(walk.places[k]) if thing is None else walk.things[k][thing] for k in (0, step))
+    rooms = [shapely.buffer(part, SLACK, join_style="mitre") for part in walk.rooms.parts]
+    pairs = itertools.product(
+        *([number for number, room in enumerate(rooms) if room.covers(shape)] for shape in (began, is_now))
+    )
+    return any((min(pair), max(pair)) in walk.rooms.doors for pair in pairs)
+
+
 def holds(walk: RecordedWalk, goal: str, step: int, meaning: Mapping[str, Sequence[int]]) -> bool:
     """Return whether a goal holds at a step."""
     kind, what, name, _ = goal_of(goal, "done")
+    if kind == "room":
+        thing = None if what == OWN_NAME else walk.felt(*meaning[what]) or ""
+        return thing != "" and _is_in_next_room(walk, thing, step)
     if kind == "circled":
         return _winds(walk, step, *meaning[name])
     if kind == "corner":

@@ -4,53 +4,68 @@ docs/certificates.md is the format, and all that is taken for granted. This modu
 ours, search nothing, compare no floats, and read neither beliefs nor the truth of an episode.
 """
 
-import json
 import re
-from itertools import pairwise, product
+from itertools import count, pairwise, product
+from math import isqrt
 from typing import Any
 
-from utak.simulator.certificates.courses import (
-    MAX_SQUARES,
-    VERGE_LETTER,
-    Course,
-    Evidence,
-    Spot,
-    Spots,
-    parsed,
-    refuse,
-    sampled,
-    turned,
-    waking_case,
-)
+from utak.simulator.certificates import courses
+from utak.simulator.certificates.courses import Course, Evidence, Span, Spot, Spots, refuse, spread
 
-VERDICTS_SHOWN = ("done", "impossible")
 KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "cases")
-SHOWN_GOAL = re.compile(r"(?:(first|then)\()?(at|beside|circled)\((\w+),(?:corner\((\w+)\)|(\w+))\)(?(1)\))")
-BARRED_GOAL = re.compile(r"(?:(first|then)\()?(?:in\((\w+),room\(next\)\)|through\((\w+),\w+\))(?(1)\))")
+GOAL = re.compile(r"(?:(first|then)\()?(\w+)\((\w+),(?:corner\((\w+)\)|(room\(next\)|\w+))\)(?(1)\))")
+BARRED_GOALS = {"at corner()": "corner", "in room(next)": "room", "through ": "room"}
+OTHER_GOALS = {"at start": "start", "at ": "near", "beside ": "near", "circled ": "circled"}
+GOAL_KINDS = {"done": BARRED_GOALS | OTHER_GOALS, "impossible": BARRED_GOALS}
+OF_DOORS = ["verge(walls)", "isolated(things)", "parted(rooms)"]  # given, of `done` of such a goal
 OF_WALLS, OF_THINGS = ["whole(squares)", "isolated(things)"], ["apart(things)"]  # given, of `impossible`
 ALONG_GRID = "along(grid)"  # given: the robot's axes lie along the squares, so only the angle 0 is treated
 RIGHT_ANGLE = 90  # degrees: a quarter turn of the grid of squares is the same grid
 CORNERS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
 OWN_NAME = "utak"
-Shown = tuple[str, str, str, str]  # corner, start, near, circled or shut; of what; the corner or parameter; the order
+Shown = tuple[str, str, str, str]  # corner, start, near, circled or room; of what; the corner or parameter; the order
 
 
 def goal_of(text: str, claim: str) -> Shown:
     """Return a goal of the task."""
-    found = (SHOWN_GOAL if claim == "done" else BARRED_GOAL).fullmatch(text) or refuse(f"nothing is shown of {text}")
-    if claim != "done":
-        return "shut", found[2] or found[3], "", ""
-    order, word, what, corner, name = found.groups()
-    kind = "corner" if corner else "start" if name == "start" else "near" if word != "circled" else word
-    if (word != "at" and kind in ("corner", "start")) or (kind in ("corner", "circled") and what != OWN_NAME):
+    order, word, what, corner, name = (GOAL.fullmatch(text) or refuse(f"nothing is shown of {text}")).groups()
+    place = "corner()" if corner else name if name in ("start", "corner", "room(next)") else ""
+    kind = GOAL_KINDS[claim].get(f"{word} {place}")
+    if not kind or (claim == "done" and kind in ("corner", "circled") and what != OWN_NAME):
         refuse(f"nothing is shown of {text}")
-    return kind, what, corner or name, order or ""
+    is_named = kind in ("near", "circled") or (claim == "done" and word == "through")
+    return kind, what, corner or (name if is_named else ""), order or ""
+
+
+def blocks(squares: Spots, size: int) -> Spots:
+    """Return the south-west squares of all squares of so many by so many squares that some squares contain."""
+    for _ in range(size - 1):
+        squares = frozenset((i, j) for i, j in squares if {(i + 1, j), (i, j + 1), (i + 1, j + 1)} <= squares)
+    return squares
+
+
+def widest_block(squares: Spots) -> int:
+    """Return the side of the largest square of squares among some; 1 at least."""
+    return next(size for size in count(1) if not blocks(squares, size + 1))
+
+
+def is_one_room(floor: Spots, size: int) -> bool:
+    """Return whether no neck, as wide as a size at least, is at most half as wide as the floor on both sides."""
+    for width in range(size, widest_block(floor)):  # of the neck, or up to 1 more: this holds up what is wider than it
+        sides = blocks(floor, isqrt(2 * width**2 - 1) + 1)  # a disc that is twice as wide holds such a square
+        if not sides <= spread(Spots([*sides][:1]), blocks(floor, width + 1).__contains__):
+            return False
+    return True
+
+
+def reach(towards: Span, square: Span) -> int:
+    """Return how far a square reaches in a direction, a vector."""
+    return sum(part * (number + (part > 0)) for part, number in zip(towards, square, strict=True))
 
 
 def claims_taken(episode: Evidence, name: str, letter: str) -> list[str]:
     """Return what the task claims of a thing and a touch of this colour does not show."""
-    about = [fact for fact in episode.claims if re.search(rf"\b{name}\b", fact)]
-    return [fact for fact in about if fact != f"colour({name},{letter})"]
+    return [fact for fact in episode.claims if re.search(rf"\b{name}\b", fact) and fact != f"colour({name},{letter})"]
 
 
 def are_whole(values: Any, number: int) -> bool:
@@ -67,38 +82,43 @@ class CertificateCheck:
         *head, self.steps, self.meaning, self.given, self.lines = (certificate[key] for key in KEYS_IN_ORDER)
         self.episode, self.claim = episode, head[2]
         texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
-        self.texts = texts if self.claim == "done" else [text for text in texts if BARRED_GOAL.fullmatch(text)][:1]
         is_form = repr(head) == repr(["certificate", 1, self.claim, episode.goals])  # of all 1s the whole number alone
-        if not is_form or self.claim not in VERDICTS_SHOWN or not self.texts:
-            refuse("it is no certificate of version 1, of goals of the episode that certificates show")
+        if not is_form or not isinstance(self.steps, list) or len(self.steps) != len(texts):
+            refuse("it is no certificate of version 1, of goals of the episode, with a step for each goal")
+        told = [(k, text) for k, text in zip(self.steps, texts, strict=True) if k is not None or self.claim == "done"]
+        self.steps, self.texts = [k for k, _ in told], [text for _, text in told]
         self.goals = [goal_of(text, self.claim) for text in self.texts]
-        if not are_whole(self.steps, len(self.goals)) or not all(0 <= k <= self.episode.last for k in self.steps):
-            refuse("it has not one step for each goal")
+        if not told or not are_whole(self.steps, len(told)) or not {*self.steps} <= {*range(episode.last + 1)}:
+            refuse("it shows nothing, or at a step that the episode does not have")
+        self.last = episode.last if self.claim == "done" else self.steps[0]
         self.timed = list(zip(self.steps, self.goals, strict=True))
         ordered = [k for k, goal in self.timed if goal[3]]
-        if ordered != sorted(ordered) or any(k != self.episode.last for k, goal in self.timed if not goal[3]):
+        if ordered != sorted(ordered) or any(k != self.last for k, goal in self.timed if not goal[3]):
             refuse("its steps are not in the order of the task, or a goal does not hold at the end")
-        taken = self.check_meaning() + (OF_WALLS + OF_THINGS * bool(self.meaning)) * (self.claim == "impossible")
-        if self.given not in (taken, [*taken, ALONG_GRID]):
-            refuse(f"what it is given must be {json.dumps(taken)}, and perhaps {ALONG_GRID}")
+        self.has_door = self.claim == "done" and any(goal[0] == "room" for goal in self.goals)
+        taken, walls = self.check_meaning() + OF_DOORS * self.has_door, OF_WALLS + OF_THINGS * bool(self.meaning)
+        granted = [taken, taken + walls] if self.claim == "impossible" else [taken]
+        if self.given not in [one + grid for one in granted for grid in ([], [ALONG_GRID])]:
+            refuse(f"what it is given must be {granted[-1]}, and perhaps {ALONG_GRID}")
 
     def check_meaning(self) -> list[str]:
         """Return the claims of the task about things that are taken to be so; refuse unless each thing was felt."""
-        named = dict.fromkeys(name for _, *names, _ in self.goals for name in names if name in self.episode.kinds)
-        if not isinstance(self.meaning, dict) or list(self.meaning) != list(named):
+        doors = dict.fromkeys(name for kind, _, name, _ in self.goals if kind == "room" and name)
+        others = [goal[1 : 3 if goal[0] in ("near", "circled") else 2] for goal in self.goals]
+        things = dict.fromkeys(name for names in others for name in names if name != OWN_NAME)
+        if not isinstance(self.meaning, dict) or list(self.meaning) != list(things):
             refuse("it must say what was felt of each thing that the goals name, and of no other")
-        taken, letters = dict[str, str](), list[str]()  # a claim: the name of the thing; colours
+        letters = dict.fromkeys([*things, *doors], "")  # that were felt of things
         for name, felt in self.meaning.items():
-            if self.episode.kinds.get(name) != "object" or not are_whole(felt, 2) or min(felt) < 0:
-                refuse(f"{name} is no object of the task, or what was felt is not named by a step and a touch")
-            letters.append(self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}"))
-            taken.update(dict.fromkeys(claims_taken(self.episode, name, letters[-1]), str(name)))
-        if len({*letters, VERGE_LETTER}) <= len(letters) or any(
-            fact.startswith(f"colour({name},") for fact, name in taken.items()
-        ):
-            refuse(
-                "two things of one colour may be one, or a thing is of another colour than the task claims, or verge"
-            )
+            if not are_whole(felt, 2) or min(felt) < 0:
+                refuse(f"what was felt of {name} is not named by a step and a touch")
+            letters[name] = self.episode.touches[felt[0]][felt[1]] or refuse(f"nothing was felt of {name}")
+        if any(self.episode.kinds.get(name) != ("door" if name in doors else "object") for name in letters):
+            refuse("a goal names something that is no object, or no door, of the task")
+        taken = {fact: name for name, letter in letters.items() for fact in claims_taken(self.episode, name, letter)}
+        is_other = any(fact.startswith(f"colour({name},") for fact, name in taken.items())
+        if is_other or len({courses.VERGE_LETTER, *map(letters.get, things)}) <= len(things):
+            refuse("two things of one colour may be one, or one is of another colour than the task claims, or verge")
         if any(goal[:2] == ("near", OWN_NAME) and self.meaning[goal[2]][0] != k for k, goal in self.timed):
             refuse("a thing was not felt at the step of its goal")
         return list(taken)
@@ -126,59 +146,79 @@ class CertificateCheck:
                 case = None if case.settle(self.episode, args) else case
             elif word == "replay" and case and not args:
                 case = case.replayed(self.episode)
-            elif word == "holds" and case and case.step == self.episode.last:
-                if not all(self.holds(goal, case, step, args) for step, goal in self.timed):
-                    refuse(f"line {number}: a goal may not hold")
+            elif word == "holds" and case and case.step == self.last and self.is_shown(case, args):
                 case, shown = None, shown + 1
             elif word == "angle" and not case and not left and repr(args) == f"[{angle + 1}]" and angle + 1 < angles:
-                angle, case = angle + 1, waking_case(angle + 1, self.episode)
-            elif word == "end" and are_whole(args, 2) and (left if case is None else case.step < self.episode.last):
+                angle, case = angle + 1, courses.waking_case(angle + 1, self.episode)
+            elif word == "end" and are_whole(args, 2) and (left if case is None else case.step < self.last):
                 if case:
                     left.append(case.ends(self.episode))
                 case = left[-1].pop((args[0], args[1]), None) or refuse(f"line {number}: the command cannot end there")
                 case = case._replace(occupied=dict(case.occupied))
             else:
-                refuse(f"line {number}: it is no line that may stand here")
+                refuse(f"line {number}: it is no line that may stand here, or a goal may not hold")
             while not case and left and not left[-1]:
                 left.pop()
         if case or left or angle != angles - 1 or not shown:
             refuse("it ends before all cases are treated, or the episode agrees with no world")
 
-    def holds(self, goal: Shown, case: Course, step: int, frame: list[int]) -> bool:
-        """Return whether a goal holds at a step of a case for sure, or is barred by a frame of squares."""
+    def is_shown(self, case: Course, door: list[Any]) -> bool:
+        """Return whether a case shows that the goals hold, those of rooms by a door, or that they cannot."""
+        if self.claim == "impossible":
+            return door == [] and self.is_barred(case)
+        return bool(door) == self.has_door and all(self.holds(goal, case, step, door) for step, goal in self.timed)
+
+    def felt(self, what: str) -> Spot | None:
+        """Return the touch that felt what a goal is about; None for the robot."""
+        return None if what == OWN_NAME else self.meaning[what]
+
+    def holds(self, goal: Shown, case: Course, step: int, door: list[Any]) -> bool:
+        """Return whether a goal holds at a step of a case for sure, one of rooms by a door and the rooms beside it."""
         kind, what, name, _ = goal
-        if kind == "shut" or frame:
-            return kind == "shut" and are_whole(frame, 4) and self.is_shut_in(what, case, frame)
+        if kind == "room":
+            return len(door) == 3 and all(are_whole(one, 4) for one in door) and self.is_next(what, case, step, door)
         if kind == "circled":
             return self.is_circled(name, case, step)
         if kind == "near" and what == OWN_NAME:
             return True
-        covered = {case.squares[step]} if what == OWN_NAME else case.covered(self.episode, self.meaning[what], step)
+        covered = case.covered(self.episode, self.felt(what), step)
         if kind == "near":
             pairs = product(covered, case.covered(self.episode, self.meaning[name], step))
             return any(max(abs(i - a), abs(j - b)) <= 1 for (i, j), (a, b) in pairs)
         return (0, 0) in covered if kind == "start" else self.is_corner(name, case, step)
 
+    def is_next(self, what: str, case: Course, step: int, frames: list[list[int]]) -> bool:
+        """Return whether what began in one of two rectangles of floor that a door joins lies in the other."""
+        began, lies = case.extent(self.episode, self.felt(what), step)
+        door, *rooms = (Spots(courses.touched(((w, e + 1), (s, n + 1)), 1)) for w, s, e, n in frames)
+        floor = door.union(*rooms)
+        unseen = {at for at in floor - began - {*case.squares[: step + 1]} if not case.was_free(at)}
+        way = 1 if frames[0][0] - 1 in (frames[1][2], frames[2][2]) else -1  # it leads along the rows, or the columns
+        (w, s, e, n), *sides = frames if way > 0 else [[s, w, n, e] for w, s, e, n in frames]
+        beside = [[(i, j) if way > 0 else (j, i) for j in (s - 1, n + 1)] for i in range(w, e + 1)]
+        walls = {at for pair in beside for at in pair if at not in began and case.occupied.get((*at, 0))}
+        walls |= {at for pair in beside for at in pair if at not in lies and case.at(at, step)}
+        walled = [walls.issuperset(pair) for pair in beside]  # each column or row of the door
+        is_joined = any(low[2] + 1 == w <= e == high[0] - 1 for low, high in (sides, sides[::-1]))
+        fits = all(one[1] <= s <= n <= one[3] and min(one[2] - one[0], one[3] - one[1]) > 2 * (n - s) for one in sides)
+        is_floor = len(floor) <= courses.MAX_SQUARES and case.unsettled(unseen, step) <= floor
+        is_led = began and lies and any(began <= one and lies <= other for one, other in (rooms, rooms[::-1]))
+        return bool(is_joined and fits and is_floor and is_led and len(walled) > walled.count(False) < 2 * (n - s + 1))
+
     def is_corner(self, name: str, case: Course, step: int) -> bool:
         """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""
-        (u, v), (i, j) = (
-            turned(*CORNERS[name], case.angle),
-            case.squares[step],
-        )  # the direction of the corner, map frame
+        u, v = towards = courses.turned(*CORNERS[name], case.angle)  # map frame
+        i, j = here = case.squares[step]
         ahead = (i + (1 if u > 0 else -1), j), (i, j + (1 if v > 0 else -1))
-        if not (
-            u and v and case.was_free((i, j)) and all(case.at(at, step) and at not in case.held[step] for at in ahead)
-        ):
+        is_shut = all(case.at(at, step) and at not in case.held[step] for at in ahead)
+        if not (u and v and is_shut and case.was_free(here)):
             return False
-
-        def is_further(p: int, q: int) -> bool:
-            return u * (p + (u > 0)) + v * (q + (v > 0)) > u * (i + (u > 0)) + v * (j + (v > 0))
-
         for (k, field), (_, most) in self.episode.ranges.items():  # does it show floor further on?
-            (p, q), squares = case.squares[min(k, step)], sampled(case.angle)[field][0]
-            if k <= step and sum(n for (c, d), n in squares.items() if is_further(p + c, q + d)) > most:
+            (p, q), squares = case.squares[min(k, step)], courses.sampled(case.angle)[field][0]
+            further = sum(n for (c, d), n in squares.items() if reach(towards, (p + c, q + d)) > reach(towards, here))
+            if k <= step and further > most:
                 return False
-        return not any(is_further(*square) for square in case.squares[: step + 1])
+        return all(reach(towards, at) <= reach(towards, here) for at in case.squares[: step + 1])
 
     def is_circled(self, name: str, case: Course, step: int) -> bool:
         """Return whether the track ends in the square where it began, which is free, and winds about a thing."""
@@ -190,31 +230,45 @@ class CertificateCheck:
         x, y = ((2 * number + 1) * self.episode.unit for number in thing)
         winding = 0
         for (x0, y0), (x1, y1) in pairwise([*track, track[0]]):
-            if (y0 <= y) != (y1 <= y):
-                left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
-                winding += (left > 0 and y1 > y0) - (left < 0 and y1 < y0)
+            left = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
+            winding += (y0 <= y < y1 and left > 0) - (y1 <= y < y0 and left < 0)
         return winding != 0 and case.at((0, 0), step) is False
 
-    def is_shut_in(self, what: str, case: Course, frame: list[int]) -> bool:
-        """Return whether the robot or a thing is in a rectangle of floor and things, with no gap that lets it out."""
-        (w, s, e, n), felt, size = frame, dict[Spot | None, str | None](), 0
-        within = solid = Spots([(0, 0)])
-        if what != OWN_NAME:
-            within = case.piece(self.episode, *self.meaning[what])
-            solid = within if all(case.at(square, 0) for square in within) else Spots()
-        if max(map(abs, frame)) > MAX_SQUARES or (what != OWN_NAME and any(case.held[: self.meaning[what][0] + 1])):
-            return False  # what was carried may lie beside it
-        while any(solid >= {*product(range(i, i + size + 1), range(j, j + size + 1))} for i, j in solid):
-            size += 1  # of the largest square of squares in it
-        for k, touches in enumerate(self.episode.touches):
-            felt.update({case.touch(k, number): letter for number, letter in enumerate(touches)})
-        sides = [[(i, j) for j in range(s + 1, n)] for i in (w, e)]
-        sides += [[(i, j) for i in range(w + 1, e)] for j in (s, n)]
-        walls = ["".join("#" if felt.get(at) == VERGE_LETTER else "." for at in side) for side in sides]
-        rim = {*product((w + 1, e - 1), range(s + 1, n)), *product(range(w + 1, e), (s + 1, n - 1))}
-        is_rim = all(felt.get(at, VERGE_LETTER) != VERGE_LETTER or case.was_free(at) for at in rim)
-        is_within = size > 0 and all(w < i < e and s < j < n for i, j in within)
-        return is_within and is_rim and all(re.fullmatch(rf"(#\.{{0,{size - 1}}})*#", wall) for wall in walls)
+    def is_barred(self, case: Course) -> bool:
+        """Return whether the goals cannot hold at once, wherever what they are about may come to."""
+        kinds, (what, *others), _, orders = zip(*self.goals, strict=True)
+        within = frozenset([(0, 0)]) if what == OWN_NAME else case.outline(self.episode, self.meaning[what])
+        if not within or (others and ({*others} != {what} or any(orders))):
+            return False
+        size = widest_block(within)
+        floor = self.shut_in(case, within, size) if OF_WALLS[0] in self.given else Spots()
+        is_shut = kinds == ("room",) and bool(floor) and is_one_room(floor, size)
+        return is_shut or ({*kinds} == {"corner"} and self.is_too_far(case, floor, within))
+
+    def shut_in(self, case: Course, within: Spots, size: int) -> Spots:
+        """Return the floor that what holds a square of a size never leaves; none where it may."""
+        touches = enumerate(self.episode.touches[: case.step + 1])
+        felt = {case.touch(k, touch): letter for k, row in touches for touch, letter in enumerate(row)}
+        verge = {at for at, letter in felt.items() if at and letter == courses.VERGE_LETTER}
+        ways = [(i, j, a, b, n) for i, j in verge for a, b in ((1, 0), (0, 1)) for n in range(1, size + 1)]
+        gaps = [(i, j, a, b, n) for i, j, a, b, n in ways if (i + a * n, j + b * n) in verge]
+        barred = verge.union((i + a * k, j + b * k) for i, j, a, b, n in gaps for k in range(n))
+        floor = spread(within, lambda at: at not in barred)
+        if len(floor) > courses.MAX_SQUARES:
+            refuse("nothing bounds the floor")
+        known = {at for at in floor if felt.get(at, courses.VERGE_LETTER) != courses.VERGE_LETTER or case.was_free(at)}
+        deep = blocks(floor, 3)
+        return floor if all((i - 1, j - 1) in deep for i, j in floor - known) else Spots()
+
+    def is_too_far(self, case: Course, floor: Spots, covered: Spots) -> bool:
+        """Return whether what covers some squares is too far from corners, wherever it is on a floor, if on one."""
+        towards = [courses.turned(*CORNERS[name], case.angle) for _, _, name, _ in self.goals]
+        known = [(i, j) for (i, j, _), is_occupied in case.occupied.items() if not is_occupied]
+        size = sum(len({at[n] for at in covered}) for n in (0, 1))  # no two points of it are further apart
+        least = sum(max((reach(way, at) for at in known), default=0) for way in towards)
+        least -= (len(towards) * (2 + size) + size * bool(floor)) * courses.DIRECTION_SCALE
+        way = sum(x for x, _ in towards), sum(y for _, y in towards)
+        return least > max((reach(way, at) for at in floor), default=least if any(way) else 0)
 
 
 def verify(episode: str, certificate: str) -> str:
@@ -223,6 +277,6 @@ def verify(episode: str, certificate: str) -> str:
     Raises RefusedError when the claim does not follow, ValueError when a text is no JSON or no episode.
     """
     try:
-        return CertificateCheck(Evidence(episode), parsed(certificate)).check()
+        return CertificateCheck(Evidence(episode), courses.parsed(certificate)).check()
     except (LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         raise ValueError(f"it is damaged: {type(error).__name__}: {error}") from None

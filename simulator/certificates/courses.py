@@ -5,9 +5,10 @@ Of a certificate this is what its lines rest on, and `checker` is the rest. Both
 
 import json
 from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from functools import cache
-from itertools import accumulate, pairwise, product
+from itertools import accumulate, product
 from math import lcm
 from typing import Any, NamedTuple, NoReturn
 
@@ -15,9 +16,8 @@ FIELD_ZONES = ((4, 0, 1), (8, 4, 2), (16, 8, 4))  # of the retina: reach, reach 
 FIELD_OFFSETS = [  # of the retina, in order: the offset (east, north) of the south-west square, and the side
     (east, north, side)
     for reach, inner, side in FIELD_ZONES
-    for north in range(reach - side, -reach - 1, -side)
-    for east in range(-reach, reach, side)
-    if not (-inner <= east < inner and -inner <= north < inner)
+    for north, east in product(range(reach - side, -reach - 1, -side), range(-reach, reach, side))
+    if min(east, north) < -inner or max(east, north) >= inner
 ]
 SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}  # the robot always fills its square
 LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
@@ -73,11 +73,9 @@ def under(east: int, north: int, angle: int) -> Spot | None:
 @cache
 def sampled(angle: int) -> list[tuple[dict[Spot, int], int]]:
     """Return of each field how often it samples each square, an offset, and how often it falls between two."""
-    fields = []
-    for east, north, side in FIELD_OFFSETS:
-        squares = [under(e, n, angle) for e in range(east, east + side) for n in range(north, north + side)]
-        fields.append((dict(Counter(square for square in squares if square)), squares.count(None)))
-    return fields
+    offsets = [product(range(east, east + side), range(north, north + side)) for east, north, side in FIELD_OFFSETS]
+    fields = [[under(e, n, angle) for e, n in field] for field in offsets]
+    return [(dict(Counter(square for square in field if square)), field.count(None)) for field in fields]
 
 
 def parsed(text: str) -> Any:
@@ -105,34 +103,22 @@ class Evidence:
         self.last = len(steps) - 1
         if [row["step"] for row in steps] != list(range(len(steps))) or {*map(len, self.touches)} != {len(TOUCH_NAMES)}:
             raise ValueError("its steps are not whole")
-        self.vectors = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
-        self.parts = lcm(*(number.denominator for vector in self.vectors for number in vector))
-        self.unit = 2 * PLACE_PARTS * DIRECTION_SCALE * self.parts  # a square: all lengths are whole numbers
-        self.error = self.unit // PLACE_PARTS
-        self.hindrance = [key for key in ("forked", "changes") if key in head]  # axiom 3
+        ways = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
+        parts = 2 * PLACE_PARTS * lcm(*(number.denominator for way in ways for number in way))
+        self.ways = [(int(east * parts), int(north * parts)) for east, north in ways]  # of commands, robot frame
+        self.unit = DIRECTION_SCALE * parts  # a square: all lengths are whole numbers
+        self.hindrance = [key for key in ("forked", "changes", "disturbed") if key in {*head}.union(*steps)]  # axiom 3
         self.hindrance += [key for key, usual in (("noise", 0), ("kb", [])) if head["options"][key] != usual]
-        self.hindrance += ["disturbed"] * any("disturbed" in row for row in steps)
-
-    def motion(self, step: int, angle: int) -> Span:
-        """Return the vector of a command, map frame."""
-        east, north = self.vectors[step]
-        x, y = turned(int(east * self.parts), int(north * self.parts), angle)
-        return x * 2 * PLACE_PARTS, y * 2 * PLACE_PARTS
 
 
-def common(one: Span, other: Span) -> Span:
-    """Return the common part of two intervals; its ends are in reverse order where there is none."""
-    return max(one[0], other[0]), min(one[1], other[1])
+def cut(interval: Span, number: int, unit: int) -> Span:
+    """Return the part of an interval within a row or column of squares; its ends are in reverse order where none is."""
+    return max(interval[0], number * unit), min(interval[1], (number + 1) * unit)
 
 
 def led(interval: Span, by: int, error: int) -> Span:
     """Return the interval through which an interval leads that is moved, longer by an error at both ends."""
     return interval[0] + min(by, 0) - error, interval[1] + max(by, 0) + error
-
-
-def side_of(number: int, unit: int) -> Span:
-    """Return the range of the coordinates of a row or column of squares."""
-    return number * unit, (number + 1) * unit
 
 
 def touched(box: Zone, unit: int) -> list[Spot]:
@@ -148,6 +134,17 @@ def sweep(box: Zone, vector: Span, unit: int) -> Spots:
     low, high = min(lane) - max(square), max(lane) - min(square)
     around = touched((led(box[0], dx, 0), led(box[1], dy, 0)), unit)
     return frozenset((i, j) for i, j in around if low < (j * dx - i * dy) * unit < high)
+
+
+def spread(squares: Iterable[Spot], is_open: Callable[[Spot], bool]) -> Spots:
+    """Return some squares and all that lead to them by edges over open squares, but ends once there are too many."""
+    found, edge = {*squares}, [*squares]
+    while edge and len(found) <= MAX_SQUARES:
+        i, j = edge.pop()
+        new = {at for at in {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - found if is_open(at)}
+        edge += new
+        found |= new
+    return frozenset(found)
 
 
 class Course(NamedTuple):
@@ -168,8 +165,7 @@ class Course(NamedTuple):
 
     def key(self, square: Spot, step: int) -> Key:
         """Return the key of what a square is at a step."""
-        changes = self.changes.get(square)
-        return *square, next((k for k in reversed(changes) if k <= step), 0) if changes else 0
+        return *square, next((k for k in reversed(self.changes.get(square, ())) if k <= step), 0)
 
     def at(self, square: Spot, step: int) -> bool | None:
         """Return whether a square is occupied at a step; None where that is not settled."""
@@ -182,10 +178,11 @@ class Course(NamedTuple):
 
     def ends(self, episode: Evidence, only: Spot | None = None) -> dict[Spot, "Course"]:
         """Return the case after the next command, for each square in which that may have ended, or for one."""
-        unit, error, here, place = episode.unit, episode.error, self.squares[-1], self.places[-1]
+        unit, error, here, place = episode.unit, episode.unit // PLACE_PARTS, self.squares[-1], self.places[-1]
         held = frozenset(square for square in self.held[-1] if self.at(square, self.step) is not False)
         word, found = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]]()
-        vector = episode.motion(self.step + 1, self.angle) if word == ("push" if held else "move") else (0, 0)
+        is_led = word == ("push" if held else "move")
+        vector = turned(*episode.ways[self.step + 1], self.angle) if is_led else (0, 0)  # map frame
         if held and word not in ("push", "release"):
             refuse(f"step {self.step + 1}: what may be held is not pushed or released")
         if not any(vector):
@@ -199,7 +196,7 @@ class Course(NamedTuple):
         for square in swept:  # a motion may have been stopped where it would have gone on in an occupied square
             if held or any((square[0] + a, square[1] + b) in barred for a, b in ahead):
                 ways = zip(place, vector, square, strict=True)
-                boxes.append([led(common(led(p, v, 0), side_of(k, unit)), 0, 0 if v else error) for p, v, k in ways])
+                boxes.append([led(cut(led(p, v, 0), k, unit), 0, 0 if v else error) for p, v, k in ways])
         for x, y in boxes:
             for square in touched((x, y), unit):
                 found.setdefault(square, []).append((x, y))
@@ -208,7 +205,7 @@ class Course(NamedTuple):
         cases: dict[Spot, Course] = {}
         for square, ends in sorted(end for end in found.items() if only in (None, end[0])):
             low, high = ([side(end[n][k] for end in ends) for n in (0, 1)] for k, side in enumerate((min, max)))
-            x, y = box = [common((low[n], high[n]), side_of(square[n], unit)) for n in (0, 1)]
+            x, y = box = [cut((low[n], high[n]), square[n], unit) for n in (0, 1)]
             by = zip(box, self.places[since], strict=True)
             (a, b), (c, d) = ((now[0] - then[1] - error, now[1] - then[0] + error) for now, then in by)
             spans = [((i * unit + a, (i + 1) * unit + b), (j * unit + c, (j + 1) * unit + d)) for i, j in taken]
@@ -227,17 +224,19 @@ class Course(NamedTuple):
         """Return the squares in which the thing lies that was felt: all about them are settled as free; () for none."""
         if episode.touches[step][touch] in (None, VERGE_LETTER):
             return frozenset()
-        piece = {self.touch(step, touch) or refuse("what was grasped was felt between two squares")}
-        edge = list(piece)
-        while edge:
-            i, j = edge.pop()
-            around = {(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)} - piece
-            new = {square for square in around if self.at(square, step) is not False}
-            edge += new
-            piece |= new
-            if len(piece) > MAX_SQUARES:
-                refuse(f"nothing bounds the thing felt at step {step}")
-        return frozenset(piece)
+        felt = self.touch(step, touch) or refuse("what was grasped was felt between two squares")
+        piece = self.unsettled([felt], step)
+        return piece if len(piece) <= MAX_SQUARES else refuse(f"nothing bounds the thing felt at step {step}")
+
+    def unsettled(self, squares: Iterable[Spot], step: int) -> Spots:
+        """Return some squares and all that lead to them over squares that are not settled as free, if not too many."""
+        return spread(squares, lambda at: self.at(at, step) is not False)
+
+    def outline(self, episode: Evidence, felt: Spot) -> Spots:
+        """Return the squares that the thing felt covers if nothing was held before; () where some are not settled."""
+        is_early = felt[0] <= self.step and not any(self.held[: felt[0] + 1])
+        piece = self.piece(episode, *felt) if is_early else frozenset[Spot]()
+        return piece if all(self.at(square, felt[0]) for square in piece) else frozenset()
 
     def replayed(self, episode: Evidence) -> "Course | None":
         """Return the case with its places by all that is settled now; None where a command cannot have ended so."""
@@ -248,7 +247,7 @@ class Course(NamedTuple):
 
     def settle(self, episode: Evidence, terms: list[tuple[int, int, int]]) -> bool:
         """Settle squares by a sum of counts, (step, field, multiplier) each; return whether no count fits it."""
-        weights: dict[Key, int] = {}
+        weights = Counter[Key]()
         least = most = 0  # of the sum over the squares that are sampled for sure
         for step, field, multiplier in terms:
             counts = episode.ranges.get((step, field)) if step <= self.step else None
@@ -258,38 +257,55 @@ class Course(NamedTuple):
             most += max(ends) - min(multiplier * slack, 0)
             column, row = self.squares[step]
             for (i, j), weight in squares.items():
-                key = self.key((column + i, row + j), step)
-                weights[key] = weights.get(key, 0) + multiplier * weight
+                weights[self.key((column + i, row + j), step)] += multiplier * weight
         low = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight < 0))
         high = sum(weight for key, weight in weights.items() if self.occupied.get(key, weight > 0))
         for key, weight in [(key, weight) for key, weight in weights.items() if key not in self.occupied and weight]:
-            if low + abs(weight) > most:  # it counts as little as it can
-                self.occupied[key] = weight < 0
-            elif high - abs(weight) < least:  # as much as it can
-                self.occupied[key] = weight > 0
+            is_least = low + abs(weight) > most  # it counts as little as it can, else as much
+            if is_least or high - abs(weight) < least:
+                self.occupied[key] = is_least == (weight < 0)
         return low > most or high < least
 
     def was_free(self, square: Spot) -> bool:
         """Return whether nothing covered a square at some step."""
         return any(self.occupied.get((*square, k)) is False for k in (0, *self.changes.get(square, ())))
 
-    def carried(self, episode: Evidence, felt: Spot, step: int) -> int:
-        """Return the last step up to one at which the thing felt may be held, if it was grasped next; else -1."""
-        grasp, way = felt[0] + 1, {"do": "grasp", "direction": TOUCH_NAMES[felt[1]]}
-        is_taken = grasp <= step and episode.actions[grasp] == way
-        return next((k for k in range(grasp, step) if not self.held[k + 1]), step) if is_taken else -1
+    def grasps(self, episode: Evidence, felt: Spot, step: int) -> Iterator[tuple[int, int, Spot | None]]:
+        """Yield of each grasp after a touch, up to a step, the last step with what it took in hand, and its square."""
+        for k in range(felt[0] + 1, step + 1):
+            if episode.actions[k]["do"] == "grasp":
+                end = next((n for n in range(k, step) if not self.held[n + 1]), step)
+                yield k, end, self.touch(k - 1, TOUCH_NAMES.index(episode.actions[k]["direction"]))
 
-    def covered(self, episode: Evidence, felt: Spot, step: int) -> set[Spot]:
-        """Return squares that the thing felt covers for sure at a step."""
-        spot, last = self.touch(*felt), self.carried(episode, felt, step)
-        is_left = spot and felt[0] <= step and self.key(spot, felt[0]) == self.key(spot, step)
-        covered = {spot} if spot and is_left else set[Spot]()
-        for square, changes in self.changes.items():  # what was free before and is occupied now covers what was held
-            since = [0, *(k for k in changes if k <= step)]
-            free = any(self.occupied.get((*square, k)) is False and end > felt[0] + 1 for k, end in pairwise(since))
-            if free and since[-1] <= last and self.occupied.get((*square, since[-1])):
-                covered.add(square)
+    def covered(self, episode: Evidence, felt: Spot | None, step: int) -> set[Spot]:
+        """Return squares that the thing felt, or without a touch the robot, covers for sure at a step."""
+        if felt is None:
+            return {self.squares[step]}
+        spot, moves, covered = self.touch(*felt), set[int](), set[Spot]()
+        for last, end, grasped in [*self.grasps(episode, felt, step), (step + 1, 0, None)]:
+            is_left = spot and felt[0] < last and self.key(spot, felt[0]) == self.key(spot, last - 1)
+            covered = {spot} if spot and is_left else set()
+            for square, changes in self.changes.items():  # what was free before covers what alone was moved since
+                since = [0, *(k for k in changes if k < last)]
+                free = [n for n, k in enumerate(since) if self.occupied.get((*square, k)) is False]
+                if free and self.at(square, last - 1) and moves.issuperset(since[free[-1] + 1 :]):
+                    covered.add(square)
+            moves |= {*range(last + 1, end + 1)} if grasped in covered else set()
         return covered
+
+    def extent(self, episode: Evidence, felt: Spot | None, step: int) -> tuple[Spots, Spots]:
+        """Return squares in which all lay of a thing, or the robot, on waking, and lies at a step; () where unknown."""
+        if felt is None:
+            return Spots([(0, 0)]), Spots([self.squares[step]])
+        began = lies = self.piece(episode, *felt)
+        if felt[0] > step or self.held[felt[0]] or any(self.key(at, felt[0])[2] for at in began):
+            return Spots(), Spots()
+        for _, end, spot in self.grasps(episode, felt, step):
+            if spot in lies:  # where it covers a square that it did not, it was taken
+                lies = self.held[end] | (Spots() if self.covered(episode, felt, end) - lies else lies)
+        part = self.unsettled(self.covered(episode, felt, step), step)  # a thing is in one piece
+        lies &= part if 0 < len(part) <= MAX_SQUARES else lies
+        return began, Spots(at for at in lies if self.at(at, step) is not False)
 
 
 def waking_case(angle: int, episode: Evidence) -> Course:

@@ -9,19 +9,21 @@ import itertools
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from contextlib import nullcontext, suppress
 from functools import cache
 from typing import Any, NamedTuple
 
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
-    BARRED_GOAL,
+    GOAL_KINDS,
+    OF_DOORS,
     OF_THINGS,
     OF_WALLS,
     OWN_NAME,
     RIGHT_ANGLE,
-    VERDICTS_SHOWN,
     CertificateCheck,
+    Shown,
     claims_taken,
     goal_of,
 )
@@ -37,6 +39,7 @@ from utak.simulator.certificates.courses import (
     sampled,
     waking_case,
 )
+from utak.simulator.certificates.doors import door_shown
 
 MAX_CASES = 20000  # that are tried; a bound on time
 StatedLine = list[Any]
@@ -74,6 +77,11 @@ class ReadFacts(dict[Key, bool]):
             self.read.add(key)
         return super().get(key, default)
 
+    def items(self) -> Any:
+        """Return all facts; who asks for all at once asks what is free."""
+        self.read |= {key for key, is_occupied in super().items() if not is_occupied}
+        return super().items()
+
 
 def is_certificate(head: bytes) -> bool:
     """Return whether a file with these first bytes is a certificate."""
@@ -85,13 +93,11 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
 
     Raises NoCertificateError where none is found.
     """
-    if verdict not in VERDICTS_SHOWN:
+    if verdict not in GOAL_KINDS:
         raise NoCertificateError(
-            f"certificates show {' and '.join(VERDICTS_SHOWN)}, and the verdict is {verdict or 'open'}"
+            f"certificates show {' and '.join(GOAL_KINDS)}, and the verdict is {verdict or 'open'}"
         )
     episode = Evidence("".join(lines))
-    if verdict == "impossible" and not any(map(BARRED_GOAL.fullmatch, episode.goals)):
-        raise NoCertificateError("that a goal is impossible is shown of in(T,room(next)) and through(T,D) alone")
     try:
         return json.dumps(_certificate(episode, verdict), separators=(",", ":")) + "\n"
     except RefusedError as why:
@@ -100,9 +106,10 @@ def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
 
 def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
     """Return the certificate of a claim; raises RefusedError or NoCertificateError where none is found."""
-    refusal = RefusedError("the goals name nothing that was felt")
-    likely: Course | None = None
-    candidates = list(_candidates(episode, claim))
+    refusal = RefusedError("the goals name nothing that was felt, or certificates show nothing of them")
+    likely = _likely_course(episode, halts=True) if claim == "impossible" else None
+    candidates = list(_candidates(episode, claim, likely.step if likely else episode.last))
+    tried = set[tuple[Any, ...]]()  # goals that may be impossible, and the squares of the things that they name
     for certificate in candidates:
         checker = CertificateCheck(episode, certificate)
         if all(goal[:2] == ("near", OWN_NAME) for goal in checker.goals):
@@ -110,7 +117,11 @@ def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
         try:
             if claim == "impossible" or len(candidates) > 1 or any(goal[3] for goal in checker.goals):
                 likely = likely or _likely_course(episode)
-                certificate["steps"] = _likely_steps(checker, likely)
+                things = [likely.outline(episode, felt) for felt in checker.meaning.values()]
+                if claim == "impossible" and (*checker.texts, *things) in tried:
+                    continue
+                tried.add((*checker.texts, *things))
+                certificate["steps"] = _likely_steps(checker, likely, certificate["steps"])
             certificate["cases"] = _Search(episode, CertificateCheck(episode, certificate)).all_lines(certificate)
         except RefusedError as why:
             refusal = why
@@ -119,8 +130,8 @@ def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
     raise refusal
 
 
-def _likely_course(episode: Evidence) -> Course:
-    """Return a course that agrees with all impressions; raises RefusedError for none."""
+def _likely_course(episode: Evidence, halts: bool = False) -> Course:
+    """Return a course that agrees with all impressions, or `halts` before a refused command; raises RefusedError."""
     for angle in range(RIGHT_ANGLE):
         left = [waking_case(angle, episode)]
         for _ in range(MAX_CASES):
@@ -132,23 +143,31 @@ def _likely_course(episode: Evidence) -> Course:
                 continue
             if case.step == episode.last:
                 return case
-            ends = case.ends(episode)
+            try:
+                ends = case.ends(episode)
+            except RefusedError:
+                if halts:
+                    return case
+                raise
             whole = max(ends, key=lambda end: sum(abs(a - b) for a, b in zip(end, case.squares[-1], strict=True)))
             left += [ends[end] for end in sorted(ends, key=lambda end: end == whole)]
     raise RefusedError("no course of events was found that agrees with the impressions")
 
 
-def _likely_steps(checker: CertificateCheck, case: Course) -> list[int]:
-    """Return the steps at which the goals hold in a case; raises RefusedError for none."""
+def _likely_steps(checker: CertificateCheck, case: Course, stated: list[int]) -> list[int]:
+    """Return the steps at which the goals hold in a case, or cannot hold at once; raises RefusedError for none."""
     if checker.claim == "impossible":
-        _frame(checker, case)
-        return [checker.episode.last]
+        with suppress(RefusedError):  # the floor goes on where no verge was felt
+            if checker.is_barred(case):
+                return stated
+        raise RefusedError(f"nothing shows that {' and '.join(checker.texts)} is impossible")
     steps: list[int] = []
     last, earliest = checker.episode.last, 0
     ordered = [number for number, goal in enumerate(checker.goals) if goal[3]]
     for number, goal in enumerate(checker.goals):
         tried = range(earliest, last) if number in ordered[:-1] else range(0)
-        found = next((k for k in (*tried, last) if checker.holds(goal, case, k, [])), None)
+        shows = (k for k in (*tried, last) if goal[0] == "room" or checker.holds(goal, case, k, []))
+        found = next((k for k in shows if goal[0] != "room" or door_shown(checker, case, step=k)), None)
         if found is None:
             raise RefusedError(f"nothing shows {checker.texts[number]}")
         earliest = found if number in ordered else earliest
@@ -156,46 +175,27 @@ def _likely_steps(checker: CertificateCheck, case: Course) -> list[int]:
     return steps
 
 
-def _frame(checker: CertificateCheck, case: Course, likely: Sequence[int] = ()) -> list[int]:
-    """Return a rectangle that shuts in what is to leave it; raises RefusedError for none."""
-    frames = itertools.chain([list(likely)] if likely else [], _frames(checker, case))
-    found = next((frame for frame in frames if checker.is_shut_in(checker.goals[0][1], case, frame)), None)
-    if found is None:
-        raise RefusedError(f"nothing shows that {checker.texts[0]} is impossible")
-    return found
-
-
-def _frames(checker: CertificateCheck, case: Course) -> Iterator[list[int]]:
-    """Yield the rectangles of felt verge about the square of waking."""
-    felt = {
-        square
-        for step, touches in enumerate(checker.episode.touches)
-        for touch, letter in enumerate(touches)
-        if letter == VERGE_LETTER and (square := case.touch(step, touch))
-    }
-    rows: dict[int, set[int]] = defaultdict(set)  # felt as verge, of each column
-    for column, row in felt:
-        rows[column].add(row)
-    frames: list[tuple[int, list[int]]] = []  # and how many squares of them were not felt
-    for w, e in itertools.combinations(sorted(rows), 2):
-        for low, high in itertools.combinations_with_replacement(sorted(rows[w] & rows[e]), 2):
-            s, n = low - 1, high + 1
-            if e - w > 1 and {(w + 1, s), (e - 1, s), (w + 1, n), (e - 1, n)} <= felt:
-                edge = {*itertools.product((w, e), range(low, n)), *itertools.product(range(w + 1, e), (s, n))}
-                frames.append((len(edge - felt), [w, s, e, n]))
-    yield from (frame for _, frame in sorted(frames))
-
-
-def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
-    """Yield certificates without cases, for each thing that each parameter may mean."""
+def _candidates(episode: Evidence, claim: str, last: int) -> Iterator[dict[str, Any]]:
+    """Yield certificates without cases, for each thing that each parameter may mean; last : the step at which."""
     texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
-    if claim == "impossible":
-        texts = [text for text in texts if BARRED_GOAL.fullmatch(text)][:1]
-    goals = [goal_of(text, claim) for text in texts]
+    goals: dict[int, Shown] = {}
+    for number, text in enumerate(texts):
+        with suppress(RefusedError) if claim == "impossible" else nullcontext():
+            goals[number] = goal_of(text, claim)
+    choices = [len(goals)] if claim == "done" else [2, 1]
+    for chosen in itertools.chain.from_iterable(itertools.combinations(goals, count) for count in choices):
+        steps = [last if number in chosen else None for number in range(len(texts))]
+        yield from _meanings(episode, claim, steps, [goals[number] for number in chosen])
+
+
+def _meanings(episode: Evidence, claim: str, steps: list[int | None], goals: list[Shown]) -> Iterator[dict[str, Any]]:
+    """Yield certificates of some goals, without cases, for each thing that each parameter may mean."""
     felt: dict[str, list[StatedLine]] = {}
     for kind, what, name, _ in goals:
         if what != OWN_NAME:
-            felt.setdefault(what, _touches(episode, what, "grasp" if kind != "shut" else "any"))
+            touches = _touches(episode, what, "grasp" if claim == "done" else "any")
+            is_led = claim == "done" and kind == "room"
+            felt.setdefault(what, touches[::-1] if is_led else touches)  # of what was led: from where it began
         if kind in ("near", "circled"):
             is_near = kind == "near" and what == OWN_NAME
             if is_near or name not in felt:
@@ -205,12 +205,15 @@ def _candidates(episode: Evidence, claim: str) -> Iterator[dict[str, Any]]:
         letters = {name: episode.touches[step][touch] for name, (step, touch) in means.items()}
         if len(set(letters.values())) < len(letters):
             continue
-        taken = [fact for name, letter in letters.items() for fact in claims_taken(episode, name, letter)]
+        named = letters | {door: "" for kind, _, door, _ in goals if kind == "room" and door}
+        taken = [fact for name, letter in named.items() for fact in claims_taken(episode, name, letter)]
         given = list(dict.fromkeys(taken))
-        if claim == "impossible":
+        if claim == "done" and any(goal[0] == "room" for goal in goals):
+            given += OF_DOORS
+        if claim == "impossible" and len(goals) == 1:
             given += OF_WALLS + (OF_THINGS if means else [])
         head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
-        yield head | {"steps": [episode.last] * len(goals), "meaning": means, "given": given, "cases": []}
+        yield head | {"steps": steps, "meaning": means, "given": given, "cases": []}
 
 
 def _touches(episode: Evidence, name: str, which: str) -> list[StatedLine]:
@@ -237,7 +240,7 @@ class _Search:
 
     def __init__(self, episode: Evidence, checker: CertificateCheck) -> None:
         self.episode, self.checker = episode, checker
-        self.frame: list[int] = []  # that shut in what is to leave it before; of `impossible`
+        self.door: list[Any] = []  # that was shown last, with its rooms
         self.cases = 0
 
     def all_lines(self, certificate: dict[str, Any]) -> list[StatedLine]:
@@ -273,7 +276,7 @@ class _Search:
                 lines, needed = [["replay"]], facts.read
             if again is not None:
                 again = again._replace(occupied=case.occupied)
-                treated = self.shown(again) if again.step == self.episode.last else self.branches(again)
+                treated = self.shown(again) if again.step == self.checker.last else self.branches(again)
                 lines, needed = lines + treated.lines, needed | treated.needed
         kept: list[StatedLine] = []
         for count in reversed(counts):
@@ -295,14 +298,15 @@ class _Search:
 
     def shown(self, case: Course) -> TreatedBranch:
         """Return the line that shows the goals; raises RefusedError where they may not hold."""
-        if self.checker.claim == "impossible":
-            self.frame = _frame(self.checker, case, self.frame)
+        if self.checker.has_door:
+            self.door = door_shown(self.checker, case, self.door) or []
         facts = ReadFacts(case.occupied)
         case = case._replace(occupied=facts)
-        for text, goal, step in zip(self.checker.texts, self.checker.goals, self.checker.steps, strict=True):
-            if not self.checker.holds(goal, case, step, self.frame):
-                raise RefusedError(f"nothing shows that {text} holds in all that may have happened")
-        return TreatedBranch([["holds", *self.frame]], facts.read)
+        if not self.checker.is_shown(case, self.door):
+            raise RefusedError(
+                f"nothing shows the claim of {' and '.join(self.checker.texts)} in all that may have happened"
+            )
+        return TreatedBranch([["holds", *self.door]], facts.read)
 
 
 def settle_all(case: Course, episode: Evidence) -> tuple[list[UsefulCount], UsefulCount | None]:

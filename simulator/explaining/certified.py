@@ -19,6 +19,8 @@ GRANTED = {
     "along(grid)": "the robot's axes lie along the squares",
     "whole(squares)": "where the robot woke one thing, or the verge, covers all of each occupied square",
     "isolated(things)": "no verge lies within a closed ring of squares that are floor or things",
+    "verge(walls)": "the verge covers all of the squares beside the door",
+    "parted(rooms)": "floors on both sides of a door that are at least twice as wide as it are two rooms",
     "apart(things)": "where the robot woke, things whose squares share an edge or are the same are one thing",
 }
 CaseLine = Sequence[Any]  # of the cases of a certificate
@@ -110,9 +112,13 @@ def _line(line: CaseLine, steps: Sequence[RecordedStep]) -> Reason:
     """Return a line that says something of a case."""
     if line[0] == "count":
         return _count(line[1:], steps)
+    rooms = [f"({w}, {s}) to ({e}, {n})" for w, s, e, n in (part for part in line if isinstance(part, list))]
+    if rooms:
+        because = f"between the rooms of squares {rooms[1]} and {rooms[2]} the door has the squares {rooms[0]}"
+        return Reason("every goal holds here", because, ReasonKind.MEASURED, "certificate")
     told = {
         "replay": ("the ways of the commands are worked out again", "by what is settled now"),
-        "holds": ("every goal holds here", "all commands are taken"),
+        "holds": ("it is as claimed here", "the commands up to the step of the claim are taken"),
     }
     claim, because = told.get(line[0], (json.dumps(line), ""))
     return Reason(claim, because, ReasonKind.MEASURED, "certificate")

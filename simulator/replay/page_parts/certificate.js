@@ -211,20 +211,32 @@ const checkCertificate = (() => {
       return sample && from(one.squares[k], sample);
     }
 
+    // Some squares, and all that lead to them by edges over open squares, by key; ends once there are too many.
+    spread(squares, isOpen) {
+      const found = new Map(squares.map((square) => [keyOf(square), square]));
+      for (const square of found.values()) { // grows while it is gone through
+        if (found.size > MAX_SQUARES) break;
+        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
+          const next = from(square, offset);
+          if (!found.has(keyOf(next)) && isOpen(next)) found.set(keyOf(next), next);
+        }
+      }
+      return found;
+    }
+
+    // Squares, and all that lead to them by edges over squares that are not settled as free.
+    unsettled(one, squares, step) {
+      return [...this.spread(squares, (square) => this.at(one, square, step) !== false).values()];
+    }
+
     // Squares in which all lies of what a touch felt, at its step.
     piece(one, [k, t]) {
       if ([null, "b"].includes(this.steps[k].touch[t])) return [];
       const first = this.touched(one, [k, t]);
       need(first, "it is not sure which square was touched");
-      const found = new Map([[keyOf(first), first]]);
-      for (const square of found.values()) { // grows while it is gone through
-        for (const offset of [[0, 1], [1, 0], [0, -1], [-1, 0]]) {
-          const next = from(square, offset);
-          if (!found.has(keyOf(next)) && this.at(one, next, k) !== false) found.set(keyOf(next), next);
-        }
-        need(found.size <= MAX_SQUARES, "what was touched may reach too far");
-      }
-      return [...found.values()];
+      const found = this.unsettled(one, [first], k);
+      need(found.length <= MAX_SQUARES, "what was touched may reach too far");
+      return found;
     }
 
     // ---- commands
@@ -358,20 +370,81 @@ const checkCertificate = (() => {
       return found;
     }
 
-    // Squares that the thing of a touch covers at a step for sure.
-    covered(one, [k, t], step) {
-      const square = this.touched(one, [k, t]), found = [];
-      if (square && k <= step && !this.times(one, square, step).some((time) => time > k)) found.push(square);
-      const { action } = this.steps[k + 1] || {};
-      if (!action || action.do !== "grasp" || DIRECTIONS[t] !== action.direction || k + 1 > step) return found;
-      let last = k;
-      while (last < step && one.held[last + 1].length) last += 1;
-      for (const key of one.changes.keys()) {
-        const other = key.split(",").map(Number), times = this.times(one, other, step), now = times.at(-1);
-        const wasFree = times.some((time, n) => n + 1 < times.length && times[n + 1] > k + 1 && one.settled.get(`${key},${time}`) === false);
-        if (now > k + 1 && now <= last && this.at(one, other, step) && wasFree) found.push(other);
+    // The grasps after a step, up to another: each with its square, and the last step of its spell.
+    grasps(one, after, upTo) {
+      const found = [];
+      for (let g = after + 1; g <= upTo; g += 1) {
+        const { action } = this.steps[g];
+        if (action.do !== "grasp") continue;
+        let end = g;
+        while (end < upTo && one.held[end + 1].length) end += 1;
+        found.push({ grasp: g, end, square: this.touched(one, [g - 1, DIRECTIONS.indexOf(action.direction)]) });
       }
       return found;
+    }
+
+    // Squares that the thing of a touch covers at a step for sure.
+    covered(one, touch, step) {
+      const spells = [];
+      for (const { grasp, end, square } of this.grasps(one, touch[0], step)) {
+        if (square && this.coveredBy(one, touch, grasp - 1, spells).some((other) => same(other, square))) spells.push([grasp, end]);
+      }
+      return this.coveredBy(one, touch, step, spells);
+    }
+
+    // The same, by the spells of the thing.
+    coveredBy(one, [k, t], step, spells) {
+      const square = this.touched(one, [k, t]), found = new Map(), inSpells = (time) => spells.some(([grasp, end]) => grasp < time && time <= end);
+      if (square && k <= step && !this.times(one, square, step).some((time) => time > k)) found.set(keyOf(square), square);
+      for (const key of one.changes.keys()) {
+        const other = key.split(",").map(Number), times = this.times(one, other, step);
+        const free = times.findLastIndex((time) => one.settled.get(`${key},${time}`) === false);
+        if (free >= 0 && this.at(one, other, step) && times.slice(free + 1).every(inSpells)) found.set(key, other);
+      }
+      return [...found.values()];
+    }
+
+    // Squares in which all of the thing of a touch began, and in which all of it lies at a step; without a touch those of the robot.
+    extent(one, touch, step) {
+      if (!touch) return { began: [[0, 0]], lies: [one.squares[step]] };
+      const began = this.piece(one, touch), [k] = touch;
+      if (k > step || one.held[k].length || began.some((square) => this.times(one, square, k).length > 1)) return { began: [], lies: [] };
+      let lies = new Map(began.map((square) => [keyOf(square), square]));
+      for (const { end, square } of this.grasps(one, k, step)) {
+        if (!square || !lies.has(keyOf(square))) continue;
+        const isTaken = this.covered(one, touch, end).some((other) => !lies.has(keyOf(other)));
+        lies = new Map([...(isTaken ? [] : lies), ...one.held[end].map((other) => [keyOf(other), other])]);
+      }
+      const part = this.unsettled(one, this.covered(one, touch, step), step), inPart = new Set(part.map(keyOf)), isBounded = part.length > 0 && part.length <= MAX_SQUARES;
+      return { began, lies: [...lies.values()].filter((square) => this.at(one, square, step) !== false && (!isBounded || inPart.has(keyOf(square)))) };
+    }
+
+    // Whether all of the thing of a touch, or of the robot, began in one of the rooms of a door and is in the other.
+    throughDoor(one, frames, touch, step) {
+      if (frames.length !== 3 || !frames.every((frame) => Array.isArray(frame) && frame.length === 4 && frame.every(Number.isInteger))) return false;
+      const sizes = frames.map(([w, s, e, n]) => [e - w + 1, n - s + 1]);
+      if (sizes.some((size) => Math.min(...size) < 1 || size[0] * size[1] > MAX_SQUARES)) return false;
+      const { began, lies } = this.extent(one, touch, step);
+      const within = ([w, s, e, n]) => ([i, j]) => w <= i && i <= e && s <= j && j <= n;
+      const isAllIn = (squares, frame) => squares.length > 0 && squares.every(within(frame));
+      const [door, ...rooms] = frames;
+      if (![rooms, [...rooms].reverse()].some(([first, last]) => isAllIn(began, first) && isAllIn(lies, last))) return false;
+      const squares = new Map();
+      for (const [w, s, e, n] of frames) for (let i = w; i <= e; i += 1) for (let j = s; j <= n; j += 1) squares.set(keyOf([i, j]), [i, j]);
+      const trodden = new Set([...began, ...one.squares.slice(0, step + 1)].map(keyOf));
+      const hidden = [...squares].filter(([key, square]) => !trodden.has(key) && !this.wasFree(one, square)).map(([, square]) => square);
+      if (squares.size > MAX_SQUARES || !this.unsettled(one, hidden, step).every((square) => squares.has(keyOf(square)))) return false;
+      const beganIn = new Set(began.map(keyOf)), liesIn = new Set(lies.map(keyOf));
+      const isWall = (square) => (one.settled.get(`${keyOf(square)},0`) === true && !beganIn.has(keyOf(square)))
+        || (this.at(one, square, step) === true && !liesIn.has(keyOf(square)));
+      return AXES.some((a) => { // the door leads along this axis
+        const b = 1 - a, [before, after] = rooms[0][a] < door[a] ? rooms : [rooms[1], rooms[0]], wide = door[b + 2] - door[b] + 1;
+        if (before[a + 2] + 1 !== door[a] || after[a] - 1 !== door[a + 2]) return false;
+        if (!rooms.every((room) => room[b] <= door[b] && door[b + 2] <= room[b + 2] && AXES.every((c) => room[c + 2] - room[c] + 1 >= 2 * wide))) return false;
+        let walled = 0;
+        for (let x = door[a]; x <= door[a + 2]; x += 1) if ([door[b] - 1, door[b + 2] + 1].every((y) => isWall(a === 0 ? [x, y] : [y, x]))) walled += 1;
+        return walled > 0 && door[a + 2] - door[a] + 1 - walled < 2 * wide;
+      });
     }
 
     atCorner(one, step, [a, b]) {
@@ -403,21 +476,73 @@ const checkCertificate = (() => {
       return winds !== 0;
     }
 
-    // Whether a frame [W, S, E, N] shuts the robot in, or the thing of a touch.
-    shutIn(one, frame, touch) {
-      if (frame.length !== 4 || !frame.every((number) => Number.isInteger(number) && Math.abs(number) <= MAX_SQUARES)) return false;
-      const [west, south, east, north] = frame, felt = this.felt(one), colourOf = (square) => felt.get(keyOf(square))?.colour;
-      const piece = touch ? this.piece(one, touch) : [[0, 0]], solid = new Set(piece.map(keyOf));
-      if (touch && (one.held.slice(0, touch[0] + 1).some((held) => held.length) || !piece.every((square) => this.at(one, square, touch[0])))) return false;
-      if (!piece.every(([i, j]) => west < i && i < east && south < j && j < north)) return false;
-      const upTo = (first, last, of) => Array.from({ length: Math.max(last - first + 1, 0) }, (_, n) => of(first + n));
-      const isSolid = ([i, j], size) => upTo(i, i + size - 1, (x) => upTo(j, j + size - 1, (y) => solid.has(keyOf([x, y])))).flat().every(Boolean);
-      let widest = 0;
-      while (piece.some((square) => isSolid(square, widest + 1))) widest += 1;
-      const ring = (by) => [[west + by, east - by].map((i) => upTo(south + 1, north - 1, (j) => [i, j])), [south + by, north - by].map((j) => upTo(west + 1, east - 1, (i) => [i, j]))].flat();
-      const wall = new RegExp(`^(#\\.{0,${widest - 1}})*#$`);
-      if (widest === 0 || !ring(0).every((side) => wall.test(side.map((square) => (colourOf(square) === "b" ? "#" : ".")).join("")))) return false;
-      return ring(1).flat().every((square) => this.wasFree(one, square) || (felt.has(keyOf(square)) && colourOf(square) !== "b"));
+    // The squares of the robot, or those that are all covered by the thing of a touch; [] where that is not settled.
+    outline(one, touch) {
+      if (!touch) return [[0, 0]];
+      if (touch[0] >= one.squares.length || one.held.slice(0, touch[0] + 1).some((held) => held.length)) return [];
+      const piece = this.piece(one, touch);
+      return piece.every((square) => this.at(one, square, touch[0])) ? piece : [];
+    }
+
+    // The squares that the middle of a square of so many squares never leaves which lies in some squares, by key; empty where it may.
+    floorOf(one, squares, size) {
+      const felt = this.felt(one), verge = new Set([...felt].filter(([, { colour }]) => colour === "b").map(([key]) => key)), walls = new Set(verge);
+      for (const key of verge) {
+        for (const [x, y] of [[1, 0], [0, 1]]) {
+          const line = Array.from({ length: size + 1 }, (_, n) => keyOf(from(felt.get(key).square, [n * x, n * y])));
+          line.forEach((end, n) => { if (verge.has(end)) line.slice(0, n).forEach((between) => walls.add(between)); });
+        }
+      }
+      const floor = this.spread(squares, (square) => !walls.has(keyOf(square))), isIn = (square) => floor.has(keyOf(square));
+      need(floor.size <= MAX_SQUARES, "the floor reaches too far");
+      const about = [-1, 0, 1].flatMap((x) => [-1, 0, 1].map((y) => [x, y]));
+      const isNoVerge = (square) => this.wasFree(one, square) || (felt.has(keyOf(square)) && felt.get(keyOf(square)).colour !== "b");
+      return [...floor.values()].every((square) => isNoVerge(square) || about.every((offset) => isIn(from(square, offset)))) ? floor : new Map();
+    }
+
+    // Of which squares of so many squares all squares are among those of a map: their south-west squares, by key.
+    blocks(squares, size) {
+      let found = squares;
+      for (let side = 1; side < size; side += 1) {
+        const smaller = found;
+        found = new Map([...smaller].filter(([, square]) => [[1, 0], [0, 1], [1, 1]].every((offset) => smaller.has(keyOf(from(square, offset))))));
+      }
+      return found;
+    }
+    widest(squares) {
+      let size = 1;
+      while (this.blocks(squares, size + 1).size) size += 1;
+      return size;
+    }
+
+    // Whether no neck of a floor is a door for what is so wide.
+    isOneRoom(floor, size) {
+      for (let width = size; width < this.widest(floor); width += 1) {
+        let side = width + 1;
+        while (side * side < 2 * width * width) side += 1;
+        const large = this.blocks(floor, side), small = this.blocks(floor, width + 1);
+        const joined = this.spread([...large.values()].slice(0, 1), (square) => small.has(keyOf(square)));
+        if (![...large.keys()].every((key) => joined.has(key))) return false;
+      }
+      return true;
+    }
+
+    // Whether goals of the robot, or of the thing of a touch, cannot hold at once; isWalled: what is felt as verge is whole.
+    barred(one, goals, touch, isWalled) {
+      const outline = this.outline(one, touch), own = new Map(outline.map((square) => [keyOf(square), square]));
+      if (!outline.length || goals.some(({ what, word }) => what !== goals[0].what || (goals.length > 1 && word))) return false;
+      const size = this.widest(own), floor = isWalled ? this.floorOf(one, outline, size) : new Map();
+      if (goals.some(({ kind }) => kind === "room")) return goals.length === 1 && floor.size > 0 && this.isOneRoom(floor, size);
+      const { c, s } = turned(one.degrees), ways = goals.map(({ of: name }) => CORNERS[name]).map(([a, b]) => [BigInt(a) * c - BigInt(b) * s, BigInt(a) * s + BigInt(b) * c]);
+      const furthest = (squares, [u, v]) => squares.map(([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n))).reduce(most);
+      const free = [...one.settled].filter(([, occupied]) => !occupied).map(([key]) => key.split(",").map(Number).slice(0, 2));
+      const [columns, rows] = AXES.map((a) => new Set(outline.map((square) => square[a])).size), length = BigInt(columns + rows);
+      const places = [...floor.values()];
+      const reached = ways.map((way) => (free.length ? furthest(free, way) : 0n)).reduce((a, b) => a + b, 0n);
+      const least = reached - (BigInt(ways.length) * (2n + length) + (places.length ? length : 0n)) * ONE;
+      const sum = AXES.map((a) => ways.reduce((total, way) => total + way[a], 0n));
+      if (!places.length) return sum.every((part) => part === 0n) && least > 0n;
+      return least > furthest(places, sum);
     }
   }
 
@@ -426,12 +551,14 @@ const checkCertificate = (() => {
   // What a goal asks for: { word, kind, what, of }; kind is null where certificates show nothing of it.
   function goalOf(text) {
     const [, word, goal] = /^(first|then|prefer)\((.*)\)$/.exec(text) || [null, "", text];
-    const corner = /^at\(utak,corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\(([a-z]\w*),([a-z]\w*)\)$/.exec(goal);
-    const [, leaves] = /^in\((\w+),room\(next\)\)$/.exec(goal) || /^through\((\w+),\w+\)$/.exec(goal) || [];
-    if (corner && corner[1] in CORNERS) return { text, word, kind: "corner", what: "utak", of: corner[1], objects: [] };
-    if (!thing || (thing[1] === "circled" && thing[2] !== "utak") || (thing[1] !== "at" && thing[3] === "start")) return { text, word, kind: null, leaves };
-    const [, relation, what, of] = thing, kind = of === "start" ? "start" : relation === "circled" ? "circled" : what === "utak" ? "felt" : "near";
-    return { text, word, kind, what, of, objects: [what, of].filter((name) => name !== "utak" && name !== "start") };
+    const corner = /^at\((\w+),corner\((\w+)\)\)$/.exec(goal), thing = /^(at|beside|circled)\((\w+),(\w+)\)$/.exec(goal);
+    const [, left, passing, door] = /^in\((\w+),room\(next\)\)$|^through\((\w+),(?!start\)|corner\))(\w+)\)$/.exec(goal) || [];
+    const made = (kind, what, of) => ({ text, word, kind, what, of, objects: [what, of].filter((name) => name && !["utak", "start"].includes(name) && kind !== "corner") });
+    if (corner) return { ...made("corner", corner[1], corner[2]), objects: corner[1] === "utak" ? [] : [corner[1]] };
+    if (left || passing) return { ...made("room", left || passing), door };
+    if (!thing || thing[3] === "corner" || (thing[1] !== "at" && thing[3] === "start")) return made(null);
+    const [, relation, what, of] = thing;
+    return made(of === "start" ? "start" : relation === "circled" ? "circled" : what === "utak" ? "felt" : "near", what, of);
   }
 
   // What stands for granted besides, for things that were felt.
@@ -465,7 +592,7 @@ const checkCertificate = (() => {
 
   // The goals that are shown, each with its step; refused where they are not those of the claim.
   function checkDone({ steps, meaning }, episode, goals) {
-    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), unknown = shown.find(({ kind }) => kind === null);
+    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), isUnknown = ({ kind, what }) => kind === null || (["corner", "circled"].includes(kind) && what !== "utak"), unknown = shown.find(isUnknown);
     need(shown.length > 0, "there is no goal to be shown");
     need(!unknown, `certificates show nothing of ${unknown && unknown.text}`);
     need(Array.isArray(steps) && steps.length === shown.length, "there is not one step for each goal");
@@ -476,23 +603,33 @@ const checkCertificate = (() => {
       if (staged) before = step;
       goal.step = step;
     });
-    const given = checkMeaning(meaning, episode, [...new Set(shown.flatMap(({ objects }) => objects))]);
+    const given = checkMeaning(meaning, episode, [...new Set(shown.flatMap(({ objects }) => objects))]), rooms = shown.filter(({ kind }) => kind === "room");
+    for (const { door } of rooms) {
+      if (!door) continue;
+      need(episode.header.task.parameters[door] === "door", `${door} is no door of the task`);
+      for (const fact of claimsOf(episode.header.task, [[door, null]])) if (!given.includes(fact)) given.push(fact);
+    }
+    if (rooms.length) given.push("verge(walls)", "isolated(things)", "parted(rooms)");
     for (const { kind, of, step, text } of shown) need(kind !== "felt" || meaning[of][0] === step, `${text} is not felt at its step`);
     return { given, shown };
   }
 
-  function checkImpossible({ steps, meaning }, episode, goals) {
-    need(same(steps, [episode.steps.length - 1]), "impossible is shown of the last step");
-    const barred = goals.find(({ word, leaves }) => word !== "prefer" && leaves), names = [barred?.leaves].filter((name) => name && name !== "utak");
-    need(barred, "certificates show of none of these goals that it is impossible");
-    const given = checkMeaning(meaning, episode, names);
-    return { given: [...given, "whole(squares)", "isolated(things)", ...(names.length ? ["apart(things)"] : [])], shown: [{ ...barred, kind: "shut", of: names[0] }] };
+  // The goals of which it is shown that they cannot hold at once, each with the step at which.
+  function checkImpossible({ steps, meaning, given }, episode, goals) {
+    const last = episode.steps.length - 1, asked = goals.filter(({ word }) => word !== "prefer");
+    need(Array.isArray(steps) && steps.length === asked.length, "there is not one step, or null, for each goal");
+    const shown = asked.map((goal, n) => ({ ...goal, step: steps[n] })).filter(({ step }) => step !== null);
+    need(shown.length > 0, "there is no goal to be shown");
+    need(shown.every(({ step }) => Number.isInteger(step) && step >= 0 && step <= last && step === shown[0].step), "this is no step of all goals");
+    need(shown.every(({ kind }) => ["corner", "room"].includes(kind)), "certificates show of none of these goals that it is impossible");
+    const names = [...new Set(shown.flatMap(({ objects }) => objects))], claims = checkMeaning(meaning, episode, names);
+    const walls = ["whole(squares)", "isolated(things)", ...(names.length ? ["apart(things)"] : [])];
+    return { given: Array.isArray(given) && given.includes(walls[0]) ? [...claims, ...walls] : claims, shown };
   }
 
-  // Whether a case shows a goal; frame : what stands behind the word `holds`.
-  function shows(world, one, { kind, what, of, step }, meaning, frame) {
-    if (kind === "shut") return world.shutIn(one, frame, meaning[of]);
-    if (frame.length) return false;
+  // Whether a case shows a goal that is done; door: what stands behind the word `holds`.
+  function shows(world, one, { kind, what, of, step }, meaning, door) {
+    if (kind === "room") return world.throughDoor(one, door, meaning[what], step);
     const covered = (name) => world.covered(one, meaning[name], step);
     if (kind === "start") return (what === "utak" ? [one.squares[step]] : covered(what)).some((square) => same(square, [0, 0]));
     if (kind === "near") return covered(what).some(([i, j]) => covered(of).some(([x, y]) => Math.abs(x - i) <= 1 && Math.abs(y - j) <= 1));
@@ -530,7 +667,7 @@ const checkCertificate = (() => {
           need(word === "holds", `${at}there is no such line`);
           need(one.squares.length === world.steps.length, `${at}commands are left`);
           need(holds(one, values), `${at}this case does not show the goals`);
-          shown.push({ ...world.drawn(one), frame: values });
+          shown.push({ ...world.drawn(one), door: values });
           done();
         }
       }
@@ -556,9 +693,12 @@ const checkCertificate = (() => {
     need(Array.isArray(cases) && (cases.length === 0) === simple, simple ? "touches show these goals, and no cases" : "cases are missing");
     let shown = [];
     if (!simple) {
-      const why = foreign(episode), world = new World(episode);
+      const why = foreign(episode), steps = claim === "done" ? episode.steps : episode.steps.slice(0, wanted.shown[0].step + 1), world = new World({ steps });
       need(why === null, why);
-      shown = readCases(cases, world, along ? 1 : 90, (one, frame) => wanted.shown.every((goal) => shows(world, one, goal, meaning, frame)));
+      const hasDoor = wanted.shown.some(({ kind }) => kind === "room");
+      const isDone = (one, door) => (door.length > 0) === hasDoor && wanted.shown.every((goal) => shows(world, one, goal, meaning, door));
+      const isBarred = (one, door) => door.length === 0 && world.barred(one, wanted.shown, meaning[wanted.shown[0].what], given.includes("whole(squares)"));
+      shown = readCases(cases, world, along ? 1 : 90, claim === "done" ? isDone : isBarred);
     }
     const touches = Object.entries(meaning).map(([name, touch]) => ({ name, touch, offset: TOUCHES[touch[1]] }));
     return { accepted: true, says: `${claim}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };

@@ -7,8 +7,8 @@ function drawnCase({ shown }, header) {
   return shown.find(({ degrees }) => (header.world.heading - degrees) % 90 === 0) || shown[0];
 }
 
-// What a checked certificate settles: squares that are occupied (crossed) or free (dotted), those felt as verge (framed), the
-// frame that shuts something in, where the robot stands at the step, and squares that the things of the goals cover for sure.
+// What a checked certificate settles: squares that are occupied (crossed) or free (dotted), those felt as verge (framed), a door
+// and the rooms that it joins, where the robot stands at the step, and squares that the things of the goals cover for sure; all at the last step of the cases where the step is later.
 function drawCertificate(at, checked) {
   const group = svg("g", { class: "certificate" }), { header, utak } = at.episode, one = drawnCase(checked, header);
   const middle = (step) => utak[step].map((value) => Math.floor(value) + MIDDLE_OF_SQUARE), heading = header.world.heading;
@@ -16,14 +16,14 @@ function drawCertificate(at, checked) {
   const add = (name, d, title) => group.append(svg("path", { class: name, d }, svg("title", {}, title)));
   if (one) { // the square of waking is (0, 0) of the map frame, whose axes lie along the grid
     const place = placing({ ...header, world: { ...header.world, heading: heading - one.degrees } }, middle(0)).robot;
-    const settled = (occupied) => one.settled(at.step, occupied);
+    const step = Math.min(at.step, one.places.length - 1), settled = (occupied) => one.settled(step, occupied);
     add("settled-free", settled(false).map((square) => dotOf(place(square))).join(""), "settled: free");
     add("settled-occupied", squares(settled(true), place), "settled: occupied");
     add("settled-verge", squares(one.verge, place), "felt: verge");
-    const [[west, east], [south, north]] = one.places[at.step].map((bounds) => bounds.map((value) => value - MIDDLE_OF_SQUARE));
-    const [low, bottom, high, top] = one.frame.map((number) => number - MIDDLE_OF_SQUARE); // the inner edge of its squares
-    if (one.frame.length) add("settled-frame", pathOf([[[low + 1, bottom + 1], [high, bottom + 1], [high, top], [low + 1, top]]], place, true), "this frame shuts it in");
-    for (const { name, touch } of checked.touches) add("settled-thing", squares(one.covered(touch, at.step), place), shown(`${name} covers this for sure`));
+    const [[west, east], [south, north]] = one.places[step].map((bounds) => bounds.map((value) => value - MIDDLE_OF_SQUARE));
+    const corners = ([w, s, e, n]) => [[w, s], [e + 1, s], [e + 1, n + 1], [w, n + 1]].map((corner) => corner.map((number) => number - MIDDLE_OF_SQUARE));
+    if (one.door.length) add("settled-door", pathOf(one.door.map(corners), place, true), "a door, and the rooms that it joins");
+    for (const { name, touch } of checked.touches) add("settled-thing", squares(one.covered(touch, step), place), shown(`${name} covers this for sure`));
     add("settled-place", pathOf([[[west, south], [east, south], [east, north], [west, north]]], place, true), "the robot stands in here for sure");
   } else for (const { name, touch: [step], offset } of checked.touches) {
     const [west, north] = placing(header, middle(step)).robot(offset).map(Math.floor);

@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from benchmarks.certificates.drawn import drawn_walk
@@ -13,9 +14,10 @@ from benchmarks.certificates.mutants import mutants
 from benchmarks.certificates.recorded import RecordedWalk, recorded_walk
 from benchmarks.certificates.truth import holds, lost_truth
 from tests.tables import few
+from utak.geometry import Screen
 from utak.kb.body import Command, Grasp, Move, Push, Release
-from utak.simulator.certificates.checker import verify
-from utak.simulator.certificates.courses import LEVEL_RANGES, SAMPLED_FIELDS, RefusedError
+from utak.simulator.certificates.checker import is_one_room, verify
+from utak.simulator.certificates.courses import LEVEL_RANGES, SAMPLED_FIELDS, RefusedError, spread
 from utak.simulator.certificates.search import NoCertificateError, certificate_of
 from utak.simulator.cli.main import main
 from utak.simulator.scenario.picture import read_picture
@@ -90,9 +92,11 @@ WRONG_CHANGES: list[tuple[Change, str]] = [
     (lambda c: without(c["cases"], "holds"), ""),
     (lambda c: c["cases"].pop(), "all cases are treated"),
     (lambda c: c.update(given=[]), "all cases are treated"),  # 89 orientations are left
-    (lambda c: c.update(claim="impossible"), "that certificates show"),
+    (lambda c: c.update(claim="impossible"), "may not hold"),
     (lambda c: c.update(goals=["at(utak,corner(southwest))"]), "of goals of the episode"),
-    (lambda c: c.update(steps=[2]), "step for each goal"),
+    (lambda c: c.update(steps=[2]), "does not have"),
+    (lambda c: c.update(steps=[]), "step for each goal"),
+    (lambda c: c.update(steps=[None]), "does not have"),
     (lambda c: c.update(steps=[0]), "does not hold at the end"),
     (lambda c: c.update(more=1), "no others"),
     (lambda c: c["cases"].insert(1, ["trust", "me"]), "no line that may stand here"),
@@ -291,23 +295,121 @@ def test_what_is_wider_than_each_gap_does_not_get_out(tmp_path: Path, room: str,
     assert verify(found.text, text).startswith("impossible: in(x,room(next)) at step 16, x is the thing felt")
     assert verify(found.text, text).endswith(given)
     stated = json.loads(text)
-    (number,) = [n for n, line in enumerate(stated["cases"]) if line[0] == "holds"][:1]
-    for change in ([0, 0, 0, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0]):
-        cases = [list(line) for line in stated["cases"]]
-        cases[number][1:] = [a + b for a, b in zip(cases[number][1:], change, strict=True)]
-        assert "may not hold" in refused(found, stated | {"cases": cases})
+    for step in range(len(found.places) - 1):  # before all was felt
+        assert refused(found, stated | {"steps": [step]})
+    assert "may not hold" in refused(found, stated | {"given": []})
     assert "must be" in refused(found, stated | {"given": given[6:].split(", ")[:2]})
 
 
 def test_of_other_goals_nothing_shows_that_they_are_impossible(tmp_path: Path) -> None:
     found = walk(tmp_path, CLOSED, [], "at(utak,x)")
-    with pytest.raises(NoCertificateError, match="alone"):
+    with pytest.raises(NoCertificateError, match="show nothing of them"):
         found_certificate(found, "impossible")
     stated = certificate(found, [], claim="impossible", given=["whole(squares)", "isolated(things)"])
-    assert "of goals of the episode that certificates show" in refused(found, stated)
+    assert "nothing is shown of at(utak,x)" in refused(found, stated)
 
 
-@pytest.mark.parametrize("goal", ["in(utak,room(next))", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"])
+L_ROOM = """
+bbbbbbbbbbbbbbb
+b.............b
+b.............b
+b.............b
+b.U...........b
+b.............b
+b.............b
+bbbbbbb.......b
+bbbbbbb.......b
+bbbbbbb.......b
+bbbbbbb.......b
+bbbbbbb.......b
+bbbbbbbbbbbbbbb
+"""
+FLOOR_SIDE = 30  # squares, of random floors with all about them
+DUMBBELL = L_ROOM.replace("bbbbbbb.......b", "bbbbbbbbbb.bbbb", 1)  # a door between two parts
+
+
+def felt_all_round(room: str) -> list[Command]:
+    """Return moves from one square to the next that beside them has a wall, on and on around the floor."""
+    rows = room.strip().splitlines()
+    free = {(i, len(rows) - 1 - j) for j, row in enumerate(rows) for i, letter in enumerate(row) if letter in ".U"}
+    (here,) = [(i, len(rows) - 1 - j) for j, row in enumerate(rows) for i, letter in enumerate(row) if letter == "U"]
+    rim = {(i, j) for i, j in free if not {(i + a, j + b) for a in (-1, 0, 1) for b in (-1, 0, 1)} <= free}
+    way = [Move(0.0, float(min(j for i, j in rim if i == here[0]) - here[1]))]
+    here = start = (here[0], min(j for i, j in rim if i == here[0]))
+    a, b = 1, 0
+    while True:  # the wall is on the right
+        if (here[0] + b, here[1] - a) in free:
+            a, b = b, -a
+        elif (here[0] + a, here[1] + b) not in free:
+            a, b = -b, a
+            continue
+        here = here[0] + a, here[1] + b
+        way.append(Move(float(a), float(b)))
+        if here == start:
+            return way
+
+
+@pytest.mark.parametrize(("room", "is_shown"), [(L_ROOM, True), (DUMBBELL, False)])
+def test_a_room_may_have_any_shape_without_a_door(tmp_path: Path, room: str, is_shown: bool) -> None:
+    found = walk(tmp_path, room, felt_all_round(room), "in(utak,room(next))")
+    if is_shown:
+        assert verify(found.text, found_certificate(found, "impossible")).startswith("impossible: in(utak,room(next))")
+    else:
+        with pytest.raises(NoCertificateError, match="nothing shows"):
+            found_certificate(found, "impossible")
+
+
+def random_floor(seed: int) -> frozenset[tuple[int, int]]:
+    """Return the squares of some rectangles that hang together, without holes, columns and rows from 1 to 28."""
+    random = np.random.default_rng(seed)
+    parts = [(random.integers(1, 16, 2), random.integers(1, 12, 2)) for _ in range(int(random.integers(1, 5)))]
+    free = {(int(w) + i, int(s) + j) for (w, s), (e, n) in parts for i in range(e) for j in range(n)}
+    floor = spread(frozenset([min(free)]), lambda at: at in free)
+    around = spread(frozenset([(0, 0)]), lambda at: at not in floor and min(at) >= 0 and max(at) < FLOOR_SIDE)
+    return frozenset((i, j) for i in range(FLOOR_SIDE) for j in range(FLOOR_SIDE)) - around
+
+
+@pytest.mark.parametrize("seed", few(range(60), 20))
+def test_a_floor_that_is_one_room_has_no_doors(seed: int) -> None:
+    floor = random_floor(seed)
+    free = np.zeros((FLOOR_SIDE, FLOOR_SIDE), dtype=bool)
+    free[tuple(zip(*floor, strict=True))] = True
+    assert not (is_one_room(floor, 1) and Screen(free).passages())
+
+
+def test_the_corners_of_a_large_floor_are_too_far_apart(tmp_path: Path) -> None:
+    goals = "at(utak,corner(northeast))", "at(utak,corner(southwest))"
+    found = walk(tmp_path, L_ROOM, [], *goals)
+    text = found_certificate(found, "impossible")
+    assert verify(found.text, text) == f"impossible: {goals[0]} at step 0, {goals[1]} at step 0"
+    stated = json.loads(text)
+    assert stated["given"] == []  # things may cover a part of a square
+    assert "may not hold" in refused(found, stated | {"steps": [0, None]})
+    small = walk(tmp_path, "bbbbb\nb.U.b\nb...b\nbbbbb", [], *goals)
+    assert "may not hold" in refused(small, stated | {"cases": [["angle", 0], ["holds"]], "given": ["along(grid)"]})
+
+
+def test_a_corner_beyond_the_wall_of_a_closed_room_is_impossible(tmp_path: Path) -> None:
+    beyond = "........\n" * 7  # north of the wall
+    room = "\n".join(line + "........" for line in f"{beyond}{CLOSED}".splitlines())
+    way = [(-1, 0), (0, 2), (0, 2), (2, 0), (3, 0), (0, -2), (0, -2), (-2, 0), (-2, 0)]
+    found = walk(tmp_path, room, [Move(float(e), float(n)) for e, n in way], "at(utak,corner(northeast))")
+    told = verify(found.text, found_certificate(found, "impossible"))
+    assert told.startswith("impossible: at(utak,corner(northeast)) at step 9; given whole(squares), isolated(things)")
+
+
+def test_what_is_impossible_may_be_shown_of_an_earlier_step(tmp_path: Path) -> None:
+    way = [(-1, 0), (0, 2), (0, 2), (2, 0), (3, 0), (0, -2), (0, -2), (-2, 0), (-2, 0)]
+    commands = [*(Move(float(e), float(n)) for e, n in way), Move(0.0, 2.0), Grasp("east"), Move(1.0, 0.0)]
+    found = walk(tmp_path, CLOSED, commands, "in(utak,room(next))")
+    stated = json.loads(found_certificate(found, "impossible"))
+    assert stated["steps"] == [11]  # the move may be none, with something in hand
+    assert shown(found, stated).startswith("impossible: in(utak,room(next)) at step 11")
+
+
+@pytest.mark.parametrize(
+    "goal", ["in(utak,r)", "around(utak,corner)", 'avoid(utak,"POINT (1 1)")', "at(x,corner(northeast))"]
+)
 def test_other_goals_are_refused(tmp_path: Path, goal: str) -> None:
     found = walk(tmp_path, ROOM, [], goal)
     assert "nothing is shown of" in refused(found, certificate(found, []))

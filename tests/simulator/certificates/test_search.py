@@ -17,6 +17,8 @@ SHOWN = {
     "go_northeast_askew": "at step 5",
     "go_northeast_and_back": "then(at(utak,start)) at step 5",
     "go_round_square": "given shape(x,square), along(grid)",
+    "go_next_room_middle": "given verge(walls), isolated(things), parted(rooms)",
+    "push_square_next_room": "given shape(x,square), verge(walls), isolated(things), parted(rooms)",
 }
 
 
@@ -33,9 +35,9 @@ def test_a_run_has_a_certificate(name: str, tmp_path: Path, capsys: pytest.Captu
 
 def test_where_nothing_shows_the_verdict_one_line_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     certificate = tmp_path / "certificate.json"
-    assert main(["run", str(EXAMPLES / "go_next_room"), "--certificate", str(certificate)]) == 0
+    assert main(["run", str(EXAMPLES / "go_around_corner"), "--certificate", str(certificate)]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "certificate" in line]
-    assert told == ["no certificate: nothing is shown of in(utak,room(next))"]
+    assert told == ["no certificate: nothing is shown of around(utak,corner)"]
     assert not certificate.exists()
 
 
@@ -48,17 +50,17 @@ def test_a_file_of_another_kind_is_not_overwritten(tmp_path: Path) -> None:
 
 def test_tests_and_sweeps_keep_certificates_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     kept = tmp_path / "kept"
-    scenarios = [str(EXAMPLES / name) for name in ("go_to_square", "go_next_room")]
+    scenarios = [str(EXAMPLES / name) for name in ("go_to_square", "go_around_corner")]
     assert main(["test", *scenarios, "--certificate", str(kept)]) == 0
     assert main(["sweep", scenarios[0], "--seeds", "3", "--certificate", str(kept)]) == 0
-    names = {"go_to_square.jsonl", "go_to_square.json", "go_next_room.jsonl", "go_next_room.txt"}
+    names = {"go_to_square.jsonl", "go_to_square.json", "go_around_corner.jsonl", "go_around_corner.txt"}
     assert {path.name for path in kept.iterdir()} == names | {"go_to_square-0-3.jsonl", "go_to_square-0-3.json"}
-    assert (kept / "go_next_room.txt").read_text().startswith("no certificate: nothing is shown of in(utak")
+    assert (kept / "go_around_corner.txt").read_text().startswith("no certificate: nothing is shown of around(utak")
     for name in ("go_to_square", "go_to_square-0-3"):
         assert main(["verify", str(kept / f"{name}.jsonl"), str(kept / f"{name}.json")]) == 0
-    (kept / "go_next_room.txt").write_text("mine")
+    (kept / "go_around_corner.txt").write_text("mine")
     assert main(["test", scenarios[1], "--certificate", str(kept)]) == 66
-    assert (kept / "go_next_room.txt").read_text() == "mine"
+    assert (kept / "go_around_corner.txt").read_text() == "mine"
     capsys.readouterr()
 
 

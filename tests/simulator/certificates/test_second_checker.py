@@ -15,12 +15,15 @@ from tests.simulator.certificates.test_checker import (
     BOX,
     CARRIED,
     CLOSED,
+    DUMBBELL,
+    L_ROOM,
     ROOM,
     ROUND,
     TO_THING,
     WRONG_CHANGES,
     Change,
     certificate,
+    felt_all_round,
     found_certificate,
     in_corner,
     walk,
@@ -131,14 +134,28 @@ def test_both_agree_on_what_is_wider_than_each_gap(tmp_path: Path) -> None:
     found = walk(tmp_path, BOX, way, "in(x,room(next))")
     text = found_certificate(found, "impossible")
     stated = json.loads(text)
-    frames = {json.dumps(line) for line in stated["cases"] if line[0] == "holds"}
-    texts = [text, *(text.replace('["holds",', f'["holds",{number},') for number in range(-3, 3))]
-    for frame in frames:
-        shut = json.loads(frame)
-        for side in range(1, 5):
-            changed_frame = [*shut[:side], shut[side] + 1, *shut[side + 1 :]]
-            texts.append(json.dumps(stated).replace(frame, json.dumps(changed_frame)))
+    texts = [text, text.replace('["holds"]', '["holds",1]')]
+    texts += [json.dumps(stated | {"steps": [step]}) for step in (-1, 0, 8, 15, None)]
+    texts += [json.dumps(stated | {"given": stated["given"][:number]}) for number in range(3)]
     assert accepted_by_both(tmp_path, found.text, texts) == 1
+
+
+@pytest.mark.parametrize(("room", "is_shown"), [(L_ROOM, True), (DUMBBELL, False)])
+def test_both_agree_on_rooms_of_any_shape(tmp_path: Path, room: str, is_shown: bool) -> None:
+    found = walk(tmp_path, room, felt_all_round(room), "in(utak,room(next))")
+    shown = walk(tmp_path, L_ROOM, felt_all_round(L_ROOM), "in(utak,room(next))")
+    stated = json.loads(found_certificate(shown, "impossible"))
+    forged = [json.dumps(stated), *map(json.dumps, mutants(stated, 8, 5))]
+    assert (accepted_by_both(tmp_path, found.text, forged) > 0) == is_shown
+
+
+def test_both_agree_on_corners_that_are_too_far_apart(tmp_path: Path) -> None:
+    for goals in (["northeast", "southwest"], ["northeast", "northwest"]):
+        found = walk(tmp_path, L_ROOM, [], *(f"at(utak,corner({name}))" for name in goals))
+        far = walk(tmp_path, L_ROOM, [], "at(utak,corner(northeast))", "at(utak,corner(southwest))")
+        stated = json.loads(found_certificate(far, "impossible")) | {"goals": list(found.goals)}
+        texts = [json.dumps(stated), *map(json.dumps, mutants(stated, 12, 7))]
+        assert (accepted_by_both(tmp_path, found.text, texts) > 0) == ("southwest" in goals)
 
 
 def test_numbers_are_read_as_they_are_written(tmp_path: Path) -> None:
