@@ -199,7 +199,8 @@ class RefusalChecks:
             refusal = refusal._replace(refused=again)
         if refusal.refused is first:
             return nothing_to_do("no passage is left to measure")
-        why = f"{turn.stage} cannot be attained: {refusal.refused.reason()}"
+        # With the passages shut that were measured geometry names none.
+        why = f"{turn.stage} cannot be attained: {first.reason()}"
         return self.noted(goal, refusal, impossible(why, *refusal.refused.proof()))
 
     def _walk_against(self, gap: PassageRow, node: Node, turn: StageTurn) -> Decision:

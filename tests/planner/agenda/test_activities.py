@@ -102,7 +102,7 @@ def narrow_door_run(folder: Path, rules: str) -> tuple[utak.Episode, list[str]]:
 @pytest.mark.long
 def test_what_geometry_refuses_is_checked_by_steps_of_the_plan(tmp_path: Path) -> None:
     episode, steps = narrow_door_run(tmp_path, "")
-    assert episode.verdict == "impossible"
+    assert episode.verdict == "impossible" and "too narrow by" in episode.reason
     wanted = ["plan(0,measure(g1)).", "plan(0,probe(g1)).", "plan(0,gauge(g1))."]
     assert [step for step in steps if step in wanted] == wanted
 
