@@ -32,7 +32,7 @@ class DrawnGap(NamedTuple):
     thing: Box | None  # that makes it look narrower
 
 
-class Plan(NamedTuple):
+class RowOfCells(NamedTuple):
     """Cells in a row, from west to east, and the openings of the walls between them."""
 
     cells: list[Box]
@@ -72,7 +72,7 @@ def drawn_doors(seed: int) -> RecordedWalk:
     return replace(walk, rooms=rooms)
 
 
-def _plan(random: np.random.Generator, carries: bool) -> Plan:
+def _plan(random: np.random.Generator, carries: bool) -> RowOfCells:
     """Return cells of one height, and one or two openings between each two of them."""
     off = float(random.choice([0.0, 0.0, 0.0, 0.0, 0.0, 0.3]))  # beside the lines of the grid
     height, at = float(random.integers(7, 15)), OUTER_WALL
@@ -93,14 +93,14 @@ def _plan(random: np.random.Generator, carries: bool) -> Plan:
         if random.random() < 0.25 and low + wide + 3 <= OUTER_WALL + height:
             found.append(DrawnGap(low + wide + 2, low + wide + 3, None))
         openings.append(found)
-    return Plan(cells, openings)
+    return RowOfCells(cells, openings)
 
 
 def _wide(cell: Box) -> float:
     return min(cell[2] - cell[0], cell[3] - cell[1])
 
 
-def _is_clear(plan: Plan) -> bool:
+def _is_clear(plan: RowOfCells) -> bool:
     """Return whether a walk can begin, and no cell but the first and the last is too narrow for a door of its own."""
     return any(_wide(cell) >= LEAST_BEGINNING for cell in plan.cells) and all(
         2 * (opening.high - opening.low) <= _wide(cell)
@@ -109,7 +109,7 @@ def _is_clear(plan: Plan) -> bool:
     )
 
 
-def _true_rooms(plan: Plan) -> TrueRooms:
+def _true_rooms(plan: RowOfCells) -> TrueRooms:
     """Return the rooms: cells, and what is joined by more than a door; and which of them a door joins."""
     parts: list[shapely.Geometry] = [shapely.box(*plan.cells[0])]
     doors, are_parted = set[tuple[int, int]](), True
@@ -125,7 +125,7 @@ def _true_rooms(plan: Plan) -> TrueRooms:
     return TrueRooms(tuple(parts), frozenset(doors), are_parted)
 
 
-def _way(random: np.random.Generator, plan: Plan, cell: Box, start: XY, thing: Box | None) -> list[XY]:
+def _way(random: np.random.Generator, plan: RowOfCells, cell: Box, start: XY, thing: Box | None) -> list[XY]:
     """Return points, from waking on: to the height of an opening, through it, and perhaps through the next."""
     here, number = start, plan.cells.index(cell)
     points = [here]

@@ -235,12 +235,8 @@ AGENDA_STEPS = {
     "recover": "what is held is put down, for the robot does not know where it is",
 }
 SETTLING_WORDS = {**SETTLING_STEPS, **AGENDA_STEPS}
-RESUMED_STEPS = (
-    "make_way",
-    "try",
-    "feel",
-    "gauge",
-)  # those that are gone on with in later decisions, before anything else
+# Those that are gone on with in later decisions, before anything else.
+RESUMED_STEPS = ("make_way", "try", "feel", "gauge")
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),

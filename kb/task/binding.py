@@ -12,7 +12,7 @@ from utak.kb.reasoning.rulebook import RuleAtom
 from utak.kb.reasoning.solver import solve
 from utak.kb.reasoning.user_rules import read_rules, rules_reach, rules_to_blame
 from utak.kb.task.described import claim_facts
-from utak.kb.task.task import Task
+from utak.kb.task.task import APPEARANCES, Task
 from utak.kb.world.model import Node, WorldModel
 
 RECONCILIATION = KB_ENCODINGS / "reconciliation.lp"
@@ -90,7 +90,7 @@ def rules_that_deny(parameter: str, reconciled: Reconciliation, rules: tuple[Pat
 
 def rules_on_what_fits(parameter: str, task: Task, rules: tuple[Path, ...]) -> str:
     """Return the places of the users' rules that state kinds, or what is claimed of a parameter; "" for none."""
-    facts = [claim.fact for claim in task.claims if claim.fact.name in ("shape", "colour")]
+    facts = [claim.fact for claim in task.claims if claim.fact.name in APPEARANCES]
     values = [str(fact.args[1]) for fact in facts if str(fact.args[0]) == parameter]
 
     def decides(atom: RuleAtom) -> bool:

@@ -166,9 +166,10 @@ def _likely_steps(checker: CertificateCheck, case: Course, stated: list[int]) ->
     ordered = [number for number, goal in enumerate(checker.goals) if goal[3]]
     for number, goal in enumerate(checker.goals):
         tried = range(earliest, last) if number in ordered[:-1] else range(0)
-        shows = (k for k in (*tried, last) if goal[0] == "room" or checker.holds(goal, case, k, []))
-        found = next((k for k in shows if goal[0] != "room" or door_shown(checker, case, step=k)), None)
-        if found is None:
+        for found in (*tried, last):
+            if door_shown(checker, case, step=found) if goal[0] == "room" else checker.holds(goal, case, found, []):
+                break
+        else:
             raise RefusedError(f"nothing shows {checker.texts[number]}")
         earliest = found if number in ordered else earliest
         steps.append(found)
