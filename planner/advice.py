@@ -10,6 +10,7 @@ from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.body import Command, Push, Turn
 from utak.kb.world.model import WorldModel
 from utak.planner.decision import RobotStep
+from utak.planner.question import Question
 from utak.planner.screen.projection import SquareIndices
 from utak.planner.sights.frontiers import Viewpoint
 
@@ -24,6 +25,7 @@ class Act:
     # be told when such a command is given (PlanExecutor.depart).
     unplanned_push: Translate | None = None
     steps: tuple[RobotStep, ...] = ()  # the steps of the robot that it begins (planner.steps); () for its own alone
+    question: Question | None = None  # what was given to planner/asp/deciding for it, where it was chosen there
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,8 @@ class See:
 
     # The squares from which they can be seen (flat indices on the arrays of the view), and the reason
     viewpoint: Viewpoint
+    question: Question  # what was given to planner/asp/deciding until it was chosen
+    steps: tuple[RobotStep, ...] = ()  # the steps of the robot that come after that
 
 
 def command_of(motion: Motion, model: WorldModel) -> Command:

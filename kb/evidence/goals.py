@@ -17,6 +17,8 @@ from utak.kb.world.model import FACT_UNITS_PER_SQUARE, ROOT_NODE, VERGE_NODE
 CHOICES = {  # the predicates of its choices, and what was chosen, in words
     "do": "this activity was chosen",
     "choose": "this subgoal was chosen",
+    "sense": "this was to be seen or felt first",
+    "react": "this was chosen for what did not move",
     "walked": "this way was chosen, before it was pulled tight",
 }
 

@@ -10,7 +10,6 @@ from utak.kb.evidence.record import Record, RecordedStep
 from utak.kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
 from utak.kb.language.atoms import atom_parts
 from utak.kb.language.goal_words import ROBOT
-from utak.kb.reasoning.interfaces import AGENDA_FACTS
 from utak.kb.tracing.decisions import SolverCall
 from utak.kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
@@ -26,7 +25,9 @@ AGENDA_INPUTS = ("stage_goal", "came_to", "open_fact")  # the record says what g
 DECIDED_INPUTS = frozenset({
     "horizon", "place", "aside", "asked", "rank", "wish", "fulfils", "about", "order", "meant_before", "may_mean",
     "waits", "holds", "kept", "offered", "thing", "goal", "bound_before", "planned",
-    "given_up", "not_through",
+    "given_up", "not_through", "due", "telling", "other_way",
+    "stage_goal", "missing", "unclear", "own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful",
+    "hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted", "begun", "undid", "came_to",
 })  # fmt: skip
 PARAMETER_INPUTS = frozenset({"bound_before", "planned", "given_up"})  # a parameter and a node, decided before
 WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # given to `task` as facts
@@ -50,7 +51,7 @@ def input_reason(record: Record, given: Given, fact_reason: FactReason) -> Reaso
     if name in TASK_INPUTS:
         return Reason(given.atom, says, ReasonKind.TASK, "the task")
     below = [*_below(record, given, name, arguments, fact_reason)]
-    decided = name in DECIDED_INPUTS | WORLD_INPUTS | AGENDA_FACTS  # no fact: it is supposed
+    decided = name in DECIDED_INPUTS | WORLD_INPUTS  # no fact: it is supposed
     kind = ReasonKind.INPUT if below else ReasonKind.DECIDED if decided else ReasonKind.MEASURED
     return Reason(given.atom, says, kind, f"step {given.step}", tuple(below), _data(given, arguments))
 

@@ -1,7 +1,7 @@
 """Argument types of facts: the check of one term, with the complaint and the hint for a term that does not fit."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from utak.kb.language.diagnostics import SourceSpan, did_you_mean
@@ -143,3 +143,19 @@ def wkt_argument(name: str, *kinds: str) -> ArgumentType:
 
 NAME_ARGUMENT = ArgumentType("name", _check_name)  # any name without arguments
 COLOUR_ARGUMENT = ArgumentType("colour", _check_colour)  # one lower-case letter
+
+
+Forms = Mapping[str, tuple[ArgumentType, ...]]  # compound terms: the types of their arguments, by name
+
+
+def compound_argument(name: str, plural: str, forms: Forms) -> ArgumentType:
+    """Return the type of terms with one of some names, each with its number of arguments."""
+
+    def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it has one of the forms."""
+        if isinstance(term, Symbol) and term.name in forms and len(forms[term.name]) == len(term.args):
+            return None
+        known = ", ".join(f"{form}/{len(types)}" for form, types in forms.items())
+        return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"{plural} are {known}")
+
+    return ArgumentType(name, check)

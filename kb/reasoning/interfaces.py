@@ -11,14 +11,13 @@ from utak.kb.language.arguments import (
     COLOUR_ARGUMENT,
     NAME_ARGUMENT,
     ArgumentType,
-    Complaint,
-    abbreviated,
+    Forms,
+    compound_argument,
     integer_argument,
     pattern_argument,
     word_argument,
 )
 from utak.kb.language.goal_words import CORNER_NAMES
-from utak.kb.language.terms import Symbol, Term
 from utak.kb.language.vocabulary import (
     BELIEF_PREDICATES,
     CONFIDENCE_ARGUMENT,
@@ -70,7 +69,6 @@ RELATION_ARGUMENT = word_argument("relation", CLAIMED_RELATIONS)
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
 MEANING_ARGUMENTS = (PARAMETER_ARGUMENT, NODE_ARGUMENT)  # what a parameter means
 MOVER_ARGUMENT = pattern_argument("thing or utak", "o[0-9]+|utak|start", "o1")  # a thing of the task plan, or the robot
-Forms = Mapping[str, tuple[ArgumentType, ...]]  # compound terms: the types of their arguments, by name
 # The steps of a task plan.
 PLAN_STEPS: Forms = {
     **dict.fromkeys(("carry", "clear"), (NODE_ARGUMENT, PLACE_ARGUMENT)),
@@ -78,34 +76,19 @@ PLAN_STEPS: Forms = {
     "go": (PLAN_DOOR_ARGUMENT,),
     **dict.fromkeys(SETTLING_STEPS, (SUBJECT_ARGUMENT,)),
 }
-
-
-def _compound_argument(name: str, plural: str, forms: Forms) -> ArgumentType:
-    """Return the type of terms with one of some names, each with its number of arguments."""
-
-    def check(term: Term) -> Complaint | None:
-        """Return the complaint about a term, or None when it has one of the forms."""
-        if isinstance(term, Symbol) and term.name in forms and len(forms[term.name]) == len(term.args):
-            return None
-        known = ", ".join(f"{form}/{len(types)}" for form, types in forms.items())
-        return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"{plural} are {known}")
-
-    return ArgumentType(name, check)
-
-
-STEP_ARGUMENT = _compound_argument("step", "steps", PLAN_STEPS)
+STEP_ARGUMENT = compound_argument("step", "steps", PLAN_STEPS)
 # The facts of the world model that may hold or not, without their confidence.
 STATED_FACTS: Forms = {
     name: declared.arguments[:-1] for (name, _), declared in BELIEF_PREDICATES.items() if declared.confident
 }
-FACT_ARGUMENT = _compound_argument("fact", "facts", STATED_FACTS)
+FACT_ARGUMENT = compound_argument("fact", "facts", STATED_FACTS)
 EXCLUSIVE_QUESTIONS: Forms = {  # whose answers exclude each other
     **dict.fromkeys(("kind", "shape", "room"), (THING_ARGUMENT,)),
     "place": (TASK_PARAMETER_ARGUMENT,),
     "passage": (MAP_REGION_ARGUMENT,),
     "loc": (),
 }
-QUESTION_ARGUMENT = _compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
+QUESTION_ARGUMENT = compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
 # The activities of the agenda, first those about nothing in particular.
@@ -115,8 +98,15 @@ ACTIVITIES: Forms = {
     **dict.fromkeys(("blame", "clash", "doubt", *SETTLING_STEPS), (SUBJECT_ARGUMENT,)),
     "resume": (BEGUN_ARGUMENT,),
 }
-ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
-KEPT_CHOICES: Forms = {"do": (ACTIVITY_ARGUMENT,), "choose": (NUMBER_ARGUMENT,)}  # made in one decision
+ACTIVITY_ARGUMENT = compound_argument("activity", "activities", ACTIVITIES)
+DOUBTS: Forms = {  # what steps rest on
+    **dict.fromkeys(("kind", "outline", "extent", "way", "surroundings"), (NODE_ARGUMENT,)),
+    "frame": (),
+}
+DOUBT_ARGUMENT = compound_argument("doubt", "doubts", DOUBTS)
+REFLEX_ARGUMENT = word_argument("reflex", ("draw_back", "let_go"))
+CHOSEN = {"do": ACTIVITY_ARGUMENT, "choose": NUMBER_ARGUMENT, "sense": DOUBT_ARGUMENT, "react": REFLEX_ARGUMENT}
+KEPT_CHOICES: Forms = {name: (argument,) for name, argument in CHOSEN.items()}  # made in one decision
 # By the name of an argument type of compound terms: these terms.
 COMPOUND_FORMS: Mapping[str, Forms] = {
     "step": PLAN_STEPS,
@@ -126,6 +116,7 @@ COMPOUND_FORMS: Mapping[str, Forms] = {
     "fact": STATED_FACTS,
     "act": ACTS,
     "question": EXCLUSIVE_QUESTIONS,
+    "doubt": DOUBTS,
 }
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 OUTCOME = {("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT), ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT)}
@@ -227,7 +218,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("alone", 1): (FACT_ARGUMENT,),
         ("none", 1): (QUESTION_ARGUMENT,),
         ("true", 1): (FACT_ARGUMENT,),
-        ("decides", 2): (_compound_argument("act", "acts", ACTS), FACT_ARGUMENT),
+        ("decides", 2): (compound_argument("act", "acts", ACTS), FACT_ARGUMENT),
     },
     "reconciliation": {
         **{(name, 1): (PARAMETER_ARGUMENT,) for name in ("wanted", "named", "carried", "kept", "hypothesised")},
@@ -311,7 +302,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("planned", 1): (STEP_ARGUMENT,),
         **OUTCOME,
         ("do", 1): (ACTIVITY_ARGUMENT,),
-        ("kept", 1): (_compound_argument("choice", "choices", KEPT_CHOICES),),
+        ("kept", 1): (compound_argument("choice", "choices", KEPT_CHOICES),),
         ("open_fact", 3): (OPEN_FACT_ARGUMENT, OPEN_KIND_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (OPEN_FACT_ARGUMENT,) for name in ("plan_with", "suppose", "depends")},
         ("refutes", 1): (ANSWER_ARGUMENT,),
@@ -344,6 +335,17 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **dict.fromkeys([("offered", 2), ("step", 2)], (NUMBER_ARGUMENT, ROBOT_STEP_ARGUMENT)),
         ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
         ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
+        ("unsure", 2): (DOUBT_ARGUMENT, NUMBER_ARGUMENT),
+        **{(name, 1): (DOUBT_ARGUMENT,) for name in ("telling", "needed", "sense")},
+        **{
+            (name, 1): (NODE_ARGUMENT,)
+            for names in ("due vague in_way bars goes_on turned_next", "inexact drawable other_way misgrasped")
+            for name in names.split()
+        },
+        **{(name, 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT) for name in ("commands", "resists", "contacts")},
+        ("looked", 2): (DOUBT_ARGUMENT, AMOUNT_ARGUMENT),
+        ("reflex", 2): (REFLEX_ARGUMENT, NODE_ARGUMENT),
+        ("react", 1): (REFLEX_ARGUMENT,),
     },
 }
 # Encodings that answer questions and decide nothing in a run.
@@ -357,14 +359,7 @@ PLAN_FACTS = frozenset(
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
         "default_price", "acts", "waits", "infeasible", "narrow", "holds", "left", "shaken", "settling", "settled",
-    ]
-)  # fmt: skip
-# Predicates of the choice among activities. Rules forbid activities, and price them.
-AGENDA_FACTS = frozenset(
-    [
-        "stage_goal", "missing", "unclear", "own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful",
-        "hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted", "stage_attained", "begun", "undid",
-        "planned", "came_to", "stuck", "do", "verdict",
+        "missing", "unclear", "came_to", "stuck",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
@@ -376,7 +371,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
     "deciding": frozenset(USER_RULE_INTERFACES["deciding"])
-    - {("aim_price", 2), ("avoid_link", 1), ("link_price", 2), ("supposed", 3)},
+    - {("aim_price", 2), ("avoid_link", 1), ("link_price", 2), ("supposed", 3), ("needed", 1)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
 MADE_LAST = frozenset(
@@ -402,5 +397,4 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
     }
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
-    | {signature for signature in USER_RULE_INTERFACES["deciding"] if signature[0] in AGENDA_FACTS}
 )  # fmt: skip

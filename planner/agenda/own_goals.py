@@ -16,6 +16,7 @@ from utak.kb.localisation.tracker import RESIDUAL_WINDOW
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE
 from utak.planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
+from utak.planner.carrying.preconditions import doubts_of_thing
 from utak.planner.deciding.pursuit import end_of
 from utak.planner.deciding.search import contact_subgoals, subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
@@ -24,7 +25,6 @@ from utak.planner.deciding.verification import (
     check_elsewhere,
     looks_again,
     looks_at_contradiction,
-    looks_for_more,
     robot_square,
 )
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
@@ -261,9 +261,7 @@ def _attained(why: str, turn: StageTurn) -> Decision:
 
 def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision:
     """Return a look at the objects of some goals before these are believed to hold; nothing when all are settled."""
-    verifier, situation = turn.verifier, turn.situation
+    situation = turn.situation
     nodes = [situation.object_of(str(term)) for goal in goals for term in goal.args[1:]]
-    doubted = [n for n in nodes if n is not None and (verifier.is_unsettled(n) or (there and n.vague))]
-    looks = [turn.look(verifier.looks_at(node, situation)) for node in doubted]
-    looks += [turn.look_if_reached(looks_for_more(node, situation)) for node in nodes if there and node is not None]
-    return next(filter(None, looks), nothing_to_do("nothing of the goals is in doubt"))
+    meant = [(node, (f"due({node.name})",) * there) for node in nodes if node is not None]
+    return turn.make_sure(doubt for node, due in meant for doubt in doubts_of_thing(node, due, situation, must=True))

@@ -24,9 +24,11 @@ from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
 from utak.planner.carrying.preconditions import (
     PLACE_SLACK,
-    looks_at_obstacles,
-    needed_views,
-    touches_of_obstacles,
+    doubts_of_barriers,
+    doubts_of_obstacles,
+    doubts_of_way,
+    resistance,
+    sensed_first,
     turn_cost,
 )
 from utak.planner.carrying.remaining_plan import (
@@ -35,6 +37,7 @@ from utak.planner.carrying.remaining_plan import (
     grasp_direction,
 )
 from utak.planner.goals.placement import end_away_from, pull_out_end
+from utak.planner.question import argument
 from utak.planner.screen.moves import is_at
 from utak.planner.screen.projection import SquareIndices, square_index
 from utak.planner.situation import Situation
@@ -43,9 +46,6 @@ from utak.planner.skills.take_along import detour_push, escape_push, region_near
 from utak.planner.skills.unjam import retreat_push
 from utak.planner.steps import grasp, release
 
-# Unexpected contacts of an object after which it is grasped from elsewhere: where it is known exactly, and where it is
-# not, as after a slip. Tuned on random worlds (benchmarks.campaign).
-MAX_CONTACTS, MAX_CONTACTS_INEXACT = 2, 4
 NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than rounding; a convention
 VIEWPOINT_TARGET = "viewpoint"  # the end of a plan that brings an object near to where the robot wants to look
 # Squares by which an object is tried another way, if there is room: as wide as the widest field of the retina, so that
@@ -116,9 +116,9 @@ class PlanExecutor:
             plan = self._operations.revalidate(before, ends if before.name == node.name else None, situation)
         if plan is None:
             self.missed += before is not None and before.grasped and not before.ended
-            answer = self._answer_failure(before, situation.model, other_way)
-            if isinstance(answer, Act):
-                return answer
+            reaction = self._react(before, situation, other_way)
+            if isinstance(reaction, Act):
+                return reaction
         last = before.target if before is not None else ""
         while True:
             found = plan or self._make_plan(self._request(node, ends, last, situation.model), situation, hoped)
@@ -230,30 +230,37 @@ class PlanExecutor:
 
     # -- when a plan fails -----------------------------------------------------------------------
 
-    def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel, other_way: bool) -> Advice:
-        """Return what to do when a motion did not move the held object: draw it back once, then release it."""
+    def _react(self, plan: RemainingPlan | None, situation: Situation, other_way: bool) -> Advice:
+        """Return what to do when a motion did not move the held object, as planner/asp/deciding/contacts.lp chooses."""
         # An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
         # degree off, for it is pushed against it as well. Nothing is to be done when nothing failed, or when nothing is
         # held: then a grasp that the plan, which no longer holds, relied on is marked as failed.
-        no_need = Infeasibility(False, "no motion failed")
+        model = situation.model
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
             self.failed.record(model.object(plan.name), model)
         if held is None or not held.stuck or self._is_anew:
-            return no_need
+            return Infeasibility(False, "no motion failed")
+        name = held.name
         if held.moved:
-            self._contacts[held.name] = self._contacts.get(held.name, 0) + 1
+            self._contacts[name] = self._contacts.get(name, 0) + 1
         pushed, self._pushed = self._pushed, None
-        bound = MAX_CONTACTS_INEXACT if held.inexact else MAX_CONTACTS
-        if held.stuck > 1 or self._contacts.get(held.name, 0) > bound:
+        drawable = held.moved and pushed is not None and self.pull
+        facts = [f"holds({name})", *resistance(held), f"contacts({name},{self._contacts.get(name, 0)})"]
+        given = {"inexact": held.inexact, "drawable": drawable, "other_way": other_way}
+        question = situation.question.adding([*facts, *(f"{fact}({name})" for fact, is_so in given.items() if is_so)])
+        answer = question.answer() or ()
+        if any(atom.name == "misgrasped" for atom in answer):
             self.failed.record(held, model)
-        elif other_way:
-            return no_need
-        elif held.moved and pushed is not None and self.pull:
-            doubted = self._contacts[held.name] > 1 or not is_grid_aligned(held.polygon)
+        reflex = str(argument(answer, "react"))
+        question = question.keeping(f"react({reflex})")
+        if reflex == "draw_back" and pushed is not None:
+            doubted = self._contacts[name] > 1 or not is_grid_aligned(held.polygon)
             retreat = retreat_push(held, pushed, model, doubted)
-            return Act(command_of(retreat, model), f"{held.name} is drawn back from what stopped it")
-        return Act(Release(), f"{held.name} is released, because it did not move")
+            return Act(command_of(retreat, model), f"{name} is drawn back from what stopped it", question=question)
+        if reflex == "let_go":
+            return Act(Release(), f"{name} is released, because it did not move", question=question)
+        return Infeasibility(False, "nothing is done about what did not move")
 
     # -- making a plan ---------------------------------------------------------------------------
 
@@ -275,10 +282,12 @@ class PlanExecutor:
             if isinstance(cleared, See | Infeasibility):
                 return cleared
             node, found = cleared
-        for look in needed_views(found, node, situation):
+        sense = sensed_first(doubts_of_way(found, node, situation), situation)
+        if sense is not None:
             prefix = self._operations.safe_prefix(found, node, situation)
             if prefix is None:
-                return See(look)
+                then = self._operations.begin_plan(found, node, situation.model).steps(situation.model)
+                return See(sense.doubt.look, sense.question, then)
             found = prefix
         if not found.plan.legs:
             return Infeasibility(False, f"{node.name} seems to lie there already")
@@ -289,16 +298,16 @@ class PlanExecutor:
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
         """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
-        touch = next(touches_of_obstacles(found, situation), None)
-        if touch is not None:
-            return See(touch)
+        sense = sensed_first(doubts_of_obstacles(found, situation), situation)
+        if sense is not None:
+            return See(sense.doubt.look, sense.question)
         asked = [self._plan_aside(other, found, situation) for other in situation.model.objects]
         cleared = [one for one in asked if one is not None]
         if cleared:
             return min(cleared, key=lambda one: one[1].plan.commands)
-        look = next(looks_at_obstacles(found, situation), None)
-        if look is not None:
-            return See(look)
+        sense = sensed_first(doubts_of_barriers(found, situation), situation)
+        if sense is not None:
+            return See(sense.doubt.look, sense.question)
         return Infeasibility(False, f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside")
 
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:

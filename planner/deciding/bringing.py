@@ -5,12 +5,9 @@ from collections.abc import Mapping
 from utak.geometry.manipulation.goals import End
 from utak.kb.world.model import Node
 from utak.planner.advice import Act
+from utak.planner.carrying.preconditions import doubt_of_kind, doubts_of_thing
 from utak.planner.deciding.stage_turn import StageTurn
-from utak.planner.deciding.verification import looks_for_more
 from utak.planner.decision import Decision, nothing_to_do
-from utak.planner.navigation.subgoals import Subgoal
-from utak.planner.sights.frontiers import touch_viewpoint
-from utak.planner.subgoal_kind import SubgoalKind
 
 ASIDE_TARGET = "aside"  # the end of a plan that moves an object out of the robot's way
 
@@ -18,15 +15,10 @@ ASIDE_TARGET = "aside"  # the end of a plan that moves an object out of the robo
 def bring_to_end(node: Node, ends: Mapping[str, End], turn: StageTurn, purpose: str = "") -> Decision:
     """Return the next command to bring an object to an end, or to find out what it is; nothing when there is none."""
     # What did not move is moved another way first, where one is left, also for no ends.
-    if node.felt_first:
-        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(turn.situation.cost_maps, node))
-        return turn.look_if_reached([touch])
-    unclear = node.polygon is None or node.vague
-    look = turn.look_if_reached(turn.verifier.looks_at(node, turn.situation) if unclear else [])
-    if look or node.polygon is None:
+    doubts = [*doubt_of_kind(node, turn.situation)]
+    look = turn.make_sure(doubts or doubts_of_thing(node, (f"due({node.name})",), turn.situation))
+    if look or node.polygon is None or node.felt_first:
         return look
-    if more := turn.look_if_reached(looks_for_more(node, turn.situation)):
-        return more
     advice = turn.executor.advise(node, ends, turn.situation)
     if not isinstance(advice, Act):
         return turn.prepare(advice)

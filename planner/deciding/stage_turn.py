@@ -1,6 +1,6 @@
 """The basis of a decision: a stage of the task, what is believed, and the tools with which commands are worked out."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +10,7 @@ from utak.kb.language.terms import Fact
 from utak.kb.task.binding import Reconciliation
 from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
+from utak.planner.carrying.preconditions import Doubt, sensed_first
 from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
 from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
@@ -73,6 +74,27 @@ class StageTurn:
         """Return the next command towards the best look; nothing for no looks, or when no way leads there."""
         return command_or_nothing(self.look(looks))
 
+    def make_sure(self, doubts: Iterable[Doubt]) -> Decision:
+        """Return the next command to see or feel what must be told first; nothing for no need, or for no way there."""
+        left, last = list(doubts), [f"telling({self.verifier.telling})"] * bool(self.verifier.telling)
+        situation = replace(self.situation, question=self.situation.question.adding(last))
+        self.verifier.telling = ""
+        while (sense := sensed_first(left, situation)) is not None:
+            asked = self.within(replace(situation, question=sense.question))
+            look = asked.look([Subgoal(SubgoalKind.INSPECT, *sense.doubt.look)])
+            if look.command is not None or sense.doubt.must:
+                self.verifier.telling = sense.doubt.name
+                return look
+            left.remove(sense.doubt)
+        return nothing_to_do("nothing must be told first")
+
+    def see(self, see: See, along: Callable[[Subgoal], Decision] | None = None) -> Decision:
+        """Return the next command to see some squares; the steps of the plan come after those there. Or the verdict."""
+        asked = self.within(replace(self.situation, question=see.question))
+        decision = asked.seek([Subgoal(SubgoalKind.INSPECT, *see.viewpoint)], along=along)
+        walks = decision.steps[-1:] and decision.steps[-1].name == "look"
+        return replace(decision, steps=(*decision.steps, *see.steps)) if walks else decision
+
     def go(self, go: Go) -> Decision:
         """Return the next command to where an object is grasped, so that the last move halts there; or the verdict."""
         walk = self.seek([Subgoal(SubgoalKind.ATTAIN, go.square, go.why)], lambda: "no way leads there")
@@ -83,7 +105,7 @@ class StageTurn:
     def act(self, act: Act, why: str = "") -> Decision:
         """Return the command of an act, for a reason of its own or another one."""
         self.executor.depart(act)
-        return Decision(act.command, f"{why or act.why}; {self.stage}", steps=act.steps)
+        return Decision(act.command, f"{why or act.why}; {self.stage}", steps=act.steps, question=act.question)
 
     def act_anew(self, advice: Advice, why: str = "") -> Decision:
         """Return the same of an act; nothing where its command would close a loop, and for other advice."""
@@ -98,7 +120,7 @@ class StageTurn:
         if isinstance(advice, Go):
             return command_or_nothing(self.go(advice))
         if isinstance(advice, See):
-            return self.look_if_reached([Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)])
+            return command_or_nothing(self.see(advice))
         return nothing_to_do("no place to go to, and nothing to look at first, is known")
 
     def feel_before_verdict(self, ask: Callable[[], Decision]) -> Decision:

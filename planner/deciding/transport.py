@@ -20,10 +20,10 @@ from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.open_facts import proof_if_not_found
 from utak.planner.carrying.plan_executor import Advice
+from utak.planner.carrying.preconditions import doubt_of_frame, doubts_of_thing
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.trials import Refusal, RefusalChecks
-from utak.planner.deciding.verification import looks_before_grasp, looks_for_more
 from utak.planner.decision import Decision, TaskVerdict, command_or_nothing, done, impossible, nothing_to_do
 from utak.planner.goals.corner_goal import approach_for_goals
 from utak.planner.goals.joint import conflict
@@ -37,7 +37,6 @@ from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.situation import Situation
 from utak.planner.skills.press import Presser
 from utak.planner.stages import Stage
-from utak.planner.subgoal_kind import SubgoalKind
 
 MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looked at first; tuned on random worlds
 
@@ -75,7 +74,8 @@ class Transporter:
             pressed = self._press_on(node, turn)
             if pressed or not self._land(goal, node, turn).viewpoints:
                 return pressed or done(f"{goal} holds")
-        if look := _look_at(node, turn):
+        due = (f"due({node.name})",)
+        if look := turn.make_sure(doubts_of_thing(node, due, turn.situation, must=True)):
             return look
         if node.polygon is None:
             why = f"{turn.stage} is not attempted: the outline of {node.name} is not known"
@@ -115,8 +115,7 @@ class Transporter:
         turn = turn.within(turn.situation.along_with(node.patch)) if land.shut_in else turn
         if isinstance(advice, See):
             along = None if turn.situation.minds_doors(node.name) else partial(_take_along, node, turn)
-            subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
-            return turn.seek([subgoal], along=along)
+            return turn.see(advice, along)
         # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
         if self.checks.is_probing(node, turn):
             refusal = Refusal(node, land.must_reach.ends() or land.ends, advice)
@@ -192,7 +191,7 @@ class Transporter:
         if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
             advice = turn.executor.release_looping(turn.situation.model)
         grasps = isinstance(advice.command, Move | Grasp)
-        if grasps and (look := turn.look(looks_before_grasp(node, turn.executor.turns, turn.situation))):
+        if grasps and (look := turn.make_sure(doubt_of_frame(node, turn.executor.turns, turn.situation))):
             return look
         if isinstance(advice.command, Push | Turn):
             self._presser.forget()
@@ -285,13 +284,6 @@ class Transporter:
             return nothing_to_do(f"no push leads {node.name} out")
         self._presser.forget()
         return turn.act(out)
-
-
-def _look_at(node: Node, turn: StageTurn) -> Decision:
-    """Return the next command to look at an object of which something is not clear; nothing when no look tells more."""
-    unclear = node.polygon is None or node.vague or turn.verifier.is_unsettled(node)
-    look = turn.look(turn.verifier.looks_at(node, turn.situation) if unclear else [])
-    return look or turn.look_if_reached(looks_for_more(node, turn.situation))
 
 
 def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn) -> Decision:

@@ -19,36 +19,21 @@ from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.goals.bounds import unfelt_bounds
 from utak.planner.goals.robot_goals import robot_stands_on
 from utak.planner.navigation.subgoals import Subgoal
-from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.screen.projection import dilate
 from utak.planner.sights import frontiers
-from utak.planner.sights.viewpoints import TO_TAKE, inspection
 from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
 
-FEW_LOOKS = 4  # squares looked from, up to which the orientation of the frame is made sure of; tuned on random worlds
-
 
 class Verifier:
-    """Remembers which objects the robot has begun to look at, and which passages it has looked at again."""
+    """Remembers what the robot went to tell last, and which passages it has looked at again."""
 
     def __init__(self) -> None:
         """Remember nothing yet."""
-        self._unsettled: set[str] = set()  # objects that are being looked at until they are settled
+        self.telling = (
+            ""  # what the robot went to tell last, as planner/asp/deciding/senses.lp calls it; "" for nothing
+        )
         self._rechecked: list[XY] = []  # passages that were looked at again, map frame
-
-    def is_unsettled(self, node: Node) -> bool:
-        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last."""
-        return node.name in self._unsettled
-
-    def looks_at(self, node: Node, situation: Situation) -> list[Subgoal]:
-        """Return a look at an object that is not settled; [] when no look is left that may tell more."""
-        self._unsettled.discard(node.name)
-        if node.polygon is not None and not node.open:
-            return []
-        found = _inspect(inspection(situation.cost_maps, node, chance=1.0, to=TO_TAKE))
-        self._unsettled |= {node.name} if found else set()
-        return found
 
     def recheck_passage(self, refusal: Infeasibility, situation: Situation) -> list[Subgoal]:
         """Return a look from close by at a passage that is said to be too narrow, while the map is not sure."""
@@ -65,17 +50,6 @@ class Verifier:
         if any(math.dist(where, looked) <= frontiers.FOVEA_RANGE for looked in self._rechecked):
             return []
         return [Subgoal(SubgoalKind.INSPECT, near, "it is not sure that the passage is that narrow")]
-
-
-def looks_before_grasp(node: Node, turns: bool, situation: Situation) -> list[Subgoal]:
-    """Return a look that tells the orientation of the frame, before an object is grasped."""
-    model = situation.model
-    if not (
-        orientation_is_uncertain(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck
-    ):
-        return []
-    what = "it is not clear how the squares of the map lie"
-    return _inspect(frontiers.viewpoint_of(situation.cost_maps, model.mask(node.patch), what))
 
 
 def looks_at_contradiction(situation: Situation) -> list[Subgoal]:
@@ -115,14 +89,6 @@ def _is_looked_at(squares: Bools, model: WorldModel) -> bool:
 def robot_square(model: WorldModel) -> Bools:
     """Return the mask of the square in which the robot stands, (rows, columns) bool on the arrays of the view."""
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
-
-
-def looks_for_more(node: Node, situation: Situation) -> list[Subgoal]:
-    """Return where to feel how far an object goes that touches a wall or an object, or did not move when pushed."""
-    # Returns [] when it was moved or is held, when it touches no wall and no other object, or when nothing about it
-    # is to be felt (planner.sights.frontiers.rim_viewpoint).
-    look = frontiers.rim_viewpoint(situation.cost_maps, node)
-    return [] if look is None else [Subgoal(SubgoalKind.INSPECT, *look)]
 
 
 def check_elsewhere(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
