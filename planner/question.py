@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from utak.kb.language.vocabulary import Signature
-from utak.kb.reasoning.encodings import BoundedAnswer
+from utak.kb.reasoning.encodings import SHARED_PARTS, BoundedAnswer, encoding_files
 from utak.kb.reasoning.solver import solve, solve_within
 from utak.kb.reasoning.user_rules import rules_speak_of, rules_to_blame
 from utak.kb.tracing.decisions import record_decisions
@@ -43,19 +43,26 @@ class Question(NamedTuple):
         """Return whether users' rules that take part speak of any of some predicates."""
         return rules_speak_of(DECIDING_ENCODING.stem, self.rules, predicates)
 
-    def answer(self) -> list[Any] | None:
+    def answer(self, *parts: str) -> list[Any] | None:
         """Return the shown atoms of the best answer; None when there is none."""
+        # parts : the files that make a choice, alone where no rules of users speak of several together; () for all
         with record_decisions():  # a part of a decision
-            return self.recorded()
+            return solve(self._files(parts), self.facts, about=self.about)
 
     def recorded(self) -> list[Any] | None:
         """Return the same, and write it into the record of decisions."""
         return solve([DECIDING_ENCODING, *self.rules], self.facts, about=self.about)
 
-    def bounded(self) -> BoundedAnswer:
+    def bounded(self, *parts: str) -> BoundedAnswer:
         """Return the best answer that is found within MAX_DECIDING_CONFLICTS conflicts."""
         with record_decisions():
-            return solve_within([DECIDING_ENCODING, *self.rules], self.facts, MAX_DECIDING_CONFLICTS)
+            return solve_within(self._files(parts), self.facts, MAX_DECIDING_CONFLICTS)
+
+    def _files(self, parts: Sequence[str]) -> list[Path]:
+        """Return the files that are solved."""
+        if self.rules or not parts:
+            return [DECIDING_ENCODING, *self.rules]
+        return [path for path in encoding_files(DECIDING_ENCODING) if path.stem in ("inputs", *parts, *SHARED_PARTS)]
 
     def blamed(self, is_bad: Callable[[Atoms], bool]) -> tuple[str, ...]:
         """Return the users' rules because of which the answer is bad, or there is none, as `rules.lp:3`."""

@@ -97,7 +97,7 @@ def refusal(
     held = situation.model.held
     given = (question or situation.question).adding(f"offered({number},{step})" for number, step in enumerate(steps))
     given = given.adding([f"holds({held})"] * (held is not None))
-    answer = given.recorded() if last else given.answer()
+    answer = given.recorded() if last else given.answer("senses", "steps")
     if _are_begun(answer or ()):
         return ""
     blamed = given.blamed(lambda atoms: not _are_begun(atoms))

@@ -49,8 +49,13 @@ def solve_within(
 
 def _users_files(files: Sequence[Path]) -> list[Path]:
     """Return those of some files that hold users' rules, in order."""
-    others = (path for path in files if path.parent not in ENCODING_FOLDERS)
-    return [path for path in others if path.resolve().parent not in ENCODING_FOLDERS]
+    others = (path for path in files if not _is_ours(path))
+    return [path for path in others if not _is_ours(path.resolve())]
+
+
+def _is_ours(path: Path) -> bool:
+    """Return whether a file or folder is one of our encodings, or a part of one."""
+    return path.parent in ENCODING_FOLDERS or path.parent.parent in ENCODING_FOLDERS
 
 
 def _versions(files: Sequence[Path]) -> tuple[tuple[int, int], ...]:

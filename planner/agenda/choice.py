@@ -49,7 +49,7 @@ class Agenda:
 
     def next(self) -> Activity | StageEnd:
         """Return the activity that is chosen now, or the end when nothing is left."""
-        answer = self.question.answer() or ()
+        answer = self.question.answer("activities", "verdicts") or ()
         self._stuck = [str(atom) for atom in answer if atom.name == "stuck"]
         self.named = tuple({str(atom.arguments[0]): "" for atom in answer if atom.name in ("suppose", "depends")})
         for atom in answer:

@@ -249,7 +249,7 @@ class PlanExecutor:
         facts = [f"holds({name})", *resistance(held), f"contacts({name},{self._contacts.get(name, 0)})"]
         given = {"inexact": held.inexact, "drawable": drawable, "other_way": other_way}
         question = situation.question.adding([*facts, *(f"{fact}({name})" for fact, is_so in given.items() if is_so)])
-        answer = question.answer() or ()
+        answer = question.answer("contacts") or ()
         if any(atom.name == "misgrasped" for atom in answer):
             self.failed.record(held, model)
         reflex = str(argument(answer, "react"))

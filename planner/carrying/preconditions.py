@@ -45,7 +45,7 @@ def sensed_first(doubts: Iterable[Doubt], situation: Situation) -> Sense | None:
         return None
     facts = [fact for doubt in told.values() for fact in doubt.facts]
     question = situation.question.adding([*facts, *(f"unsure({name},{number})" for number, name in enumerate(told))])
-    name = str(argument(question.answer() or (), "sense"))
+    name = str(argument(question.answer("senses") or (), "sense"))
     return Sense(told[name], question.keeping(f"sense({name})")) if name in told else None
 
 

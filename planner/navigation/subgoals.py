@@ -70,7 +70,7 @@ def choose(
     if not facts:
         return NoSubgoal()
     given = question.adding(facts, (subgoal.what for subgoal in subgoals))
-    chosen = argument(given.answer() or (), "choose")
+    chosen = argument(given.answer("subgoals") or (), "choose")
     if chosen is None:
         return NoSubgoal(given.blamed(lambda atoms: argument(atoms, "choose") is None))
     return Chosen(subgoals[chosen.number - first], given.keeping(f"choose({chosen})"))

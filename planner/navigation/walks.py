@@ -163,13 +163,13 @@ def choose_walk(
     links = walks.links
     if not rules.ruled:  # then all prices are lengths, or come on top of them
         offered = {name for way in walks.ways for name in way}
-        best = over(link for link in links if link.name in offered).bounded()
+        best = over(link for link in links if link.name in offered).bounded("walks")
         if best.atoms is not None:  # what is longer cannot be better
             length = best.cost_at(WALK_LEVEL) / 100
             offered |= {link.name for link in links_within(links, walks.ends, length)}
             links = tuple(link for link in links if link.name in offered)
     given = over(links)
-    atoms = given.bounded().atoms
+    atoms = given.bounded("walks").atoms
     if atoms is None:
         return NoWalk(given.blamed(lambda _: False))
     steps = {str(a.arguments[1]): (str(a.arguments[0]), str(a.arguments[2])) for a in atoms if a.match("step", 3)}

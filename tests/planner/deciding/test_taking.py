@@ -21,7 +21,7 @@ from utak.planner.advice import Act, Go
 from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
-from utak.planner.carrying.preconditions import needed_views
+from utak.planner.carrying.preconditions import doubts_of_way, sensed_first
 from utak.planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import TaskVerdict
@@ -179,11 +179,12 @@ def test_an_object_that_would_be_grasped_again_from_here_is_not_released(aside: 
 def test_a_square_that_narrows_the_way_of_a_long_plan_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
     situation = doubtful(beside(()), 8.5, 3.5, chance)
     view, (node,) = situation.model.view, situation.model.objects
-    views = needed_views(plan_over(situation, 8.5, 1.5, pushes), node, situation)
-    assert bool(views) == looks
-    for see in views:
+    sense = sensed_first(doubts_of_way(plan_over(situation, 8.5, 1.5, pushes), node, situation), situation)
+    assert (sense is not None) == looks
+    if sense is not None:
+        assert sense.doubt.name == f"surroundings({node.name})"
         place = view.locate(8.5, 3.5)
-        rows, columns = np.divmod(see.squares, view.state.shape[1])
+        rows, columns = np.divmod(sense.doubt.look.squares, view.state.shape[1])
         assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= FOVEA_RANGE
 
 
@@ -194,7 +195,7 @@ def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
     situation = doubtful(beside(()), 8.5, 1.5, 0.2)
     (node,) = situation.model.objects
     plan = plan_over(situation, 8.5, 1.5, pushes, taken)
-    assert bool(needed_views(plan, node, situation)) == looks
+    assert (sensed_first(doubts_of_way(plan, node, situation), situation) is not None) == looks
 
 
 @pytest.mark.parametrize(
@@ -301,14 +302,15 @@ def test_an_object_that_stands_against_something_is_first_drawn_back(
     executor = PlanExecutor(pull)
     if pushed is not None:
         executor.depart(Act(Push(pushed.dx, pushed.dy), "so", pushed))
-    found = executor._answer_failure(None, model, False)
+    situation = situation_of(model)
+    found = executor._react(None, situation, False)
     assert isinstance(found, Act)
     if drawn is None:
         assert found.command == Release()
         return
     assert isinstance(found.command, Push)
     assert (found.command.east, found.command.north) == pytest.approx(drawn)
-    again = executor._answer_failure(None, model, False)
+    again = executor._react(None, situation, False)
     assert isinstance(again, Act)
     assert again.command == Release()
 

@@ -22,13 +22,13 @@ from utak.planner.agenda.decider import Decider
 from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.manipulation_oracle import ManipulationOracle, Request
 from utak.planner.carrying.open_facts import open_facts
+from utak.planner.carrying.preconditions import doubt_of_frame, sensed_first
 from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.verification import (
     Verifier,
     check_elsewhere,
     looks_again,
     looks_at_contradiction,
-    looks_before_grasp,
     unseen_beyond_door,
 )
 from utak.planner.goals.bounds import unfelt_bounds
@@ -82,11 +82,12 @@ def test_the_orientation_of_the_frame_is_looked_at_before_an_object_is_turned_or
     looked = frozenset((x, 0) for x in range(looks))
     model = replace(known_model(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
-    looks_first = looks_before_grasp(replace(node, resisted=("north",) * stuck), turns, situation_of(model))
-    assert bool(looks_first) == first
-    for subgoal in looks_first:
-        assert "how the squares of the map lie" in subgoal.what
-        assert len(subgoal.squares)
+    situation = situation_of(model)
+    sense = sensed_first(doubt_of_frame(replace(node, resisted=("north",) * stuck), turns, situation), situation)
+    assert (sense is not None) == first
+    if sense is not None:
+        assert "how the squares of the map lie" in sense.doubt.look.what
+        assert len(sense.doubt.look.squares)
 
 
 @pytest.mark.parametrize("sure", [True, False])
