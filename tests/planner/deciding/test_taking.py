@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -26,11 +27,13 @@ from utak.planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import TaskVerdict
 from utak.planner.goals.placement import Placement
+from utak.planner.question import Question
 from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
 
 NOTHING: tuple[str | None, ...] = (None,) * 8
+NOT_DRAWN_BACK = Path(__file__).resolve().parents[3] / "docs" / "sense_rules" / "04_not_drawn_back.lp"
 EAST, NORTHWEST = 2, 7
 
 
@@ -313,6 +316,19 @@ def test_an_object_that_stands_against_something_is_first_drawn_back(
     again = executor._react(None, situation, False)
     assert isinstance(again, Act)
     assert again.command == Release()
+
+
+@pytest.mark.parametrize("ruled", [False, True])
+def test_a_rule_tells_what_is_done_with_an_object_that_was_stopped(ruled: bool) -> None:
+    model = beside(()).model
+    node = replace(model.objects[0], moved=True, resisted=("north",))
+    situation = situation_of(replace(model, objects=(node,), held=node.name))
+    executor = PlanExecutor()
+    executor.depart(Act(Push(3.0, 0.0), "so", Translate(3.0, 0.0)))
+    question = Question(rules=(NOT_DRAWN_BACK,) if ruled else ())
+    reaction = executor._react(None, replace(situation, question=question), False)
+    assert isinstance(reaction, Act)
+    assert isinstance(reaction.command, Release if ruled else Push)
 
 
 @pytest.mark.parametrize(
