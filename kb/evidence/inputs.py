@@ -25,7 +25,7 @@ AGENDA_INPUTS = ("stage_goal", "came_to", "open_fact")  # the record says what g
 DECIDED_INPUTS = frozenset({
     "horizon", "place", "aside", "asked", "rank", "wish", "fulfils", "about", "order", "meant_before", "may_mean",
     "waits", "holds", "kept", "offered", "thing", "goal", "bound_before", "planned",
-    "given_up", "not_through", "due", "telling", "other_way",
+    "given_up", "not_through", "due", "telling", "other_way", "looks_away", "lets_go", "vain",
     "stage_goal", "missing", "unclear", "own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful",
     "hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted", "begun", "undid", "came_to",
 })  # fmt: skip

@@ -104,7 +104,7 @@ DOUBTS: Forms = {  # what steps rest on
     "frame": (),
 }
 DOUBT_ARGUMENT = compound_argument("doubt", "doubts", DOUBTS)
-REFLEX_ARGUMENT = word_argument("reflex", ("draw_back", "let_go"))
+REFLEX_ARGUMENT = word_argument("reflex", ("draw_back", "let_go", "take_along", "fetch", "lead_out", "detour"))
 CHOSEN = {"do": ACTIVITY_ARGUMENT, "choose": NUMBER_ARGUMENT, "sense": DOUBT_ARGUMENT, "react": REFLEX_ARGUMENT}
 KEPT_CHOICES: Forms = {name: (argument,) for name, argument in CHOSEN.items()}  # made in one decision
 # By the name of an argument type of compound terms: these terms.
@@ -339,13 +339,16 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (DOUBT_ARGUMENT,) for name in ("telling", "needed", "sense")},
         **{
             (name, 1): (NODE_ARGUMENT,)
-            for names in ("due vague in_way bars goes_on turned_next", "inexact drawable other_way misgrasped")
+            for names in (
+                "due vague in_way bars goes_on turned_next inexact drawable other_way misgrasped unmoving looks_away",
+                "in_place end_known minds_doors shuts_in taken_before lets_go pushed_on stays",
+            )
             for name in names.split()
         },
         **{(name, 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT) for name in ("commands", "resists", "contacts")},
         ("looked", 2): (DOUBT_ARGUMENT, AMOUNT_ARGUMENT),
         ("reflex", 2): (REFLEX_ARGUMENT, NODE_ARGUMENT),
-        ("react", 1): (REFLEX_ARGUMENT,),
+        **{(name, 1): (REFLEX_ARGUMENT,) for name in ("react", "vain")},
     },
 }
 # Encodings that answer questions and decide nothing in a run.

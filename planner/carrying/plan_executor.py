@@ -162,15 +162,12 @@ class PlanExecutor:
             return Infeasibility(False, f"no plan is under way for {node.name}")
         return self._next_step(plan, {}, situation)
 
-    def take_along(self, node: Node, squares: SquareIndices, fetch: bool, situation: Situation) -> Advice:
-        """Return what takes an object along to where the robot wants to look, unless it had better walk there alone."""
-        model, alone = situation.model, Infeasibility(False, f"{node.name} had better stay")
-        if node.stuck or model.held not in (None, node.name):
-            return alone
-        push = shortest_push(node, squares, situation) if self.pull and model.held is not None else None
-        if push is not None:
-            return unplanned_act(push, f"{node.name} is taken along", model)
-        return self._bring_near(node, squares, situation) if fetch else alone
+    def take_along(self, node: Node, squares: SquareIndices, situation: Situation) -> Advice:
+        """Return the push that takes the object in hand along to where the robot wants to look."""
+        push = shortest_push(node, squares, situation) if self.pull else None
+        if push is None:
+            return Infeasibility(False, f"no push takes {node.name} along")
+        return unplanned_act(push, f"{node.name} is taken along", situation.model)
 
     def detour(
         self, node: Node, looks: Sequence[SquareIndices], ends: Mapping[str, End], situation: Situation
@@ -208,7 +205,7 @@ class PlanExecutor:
             self._plan, self._pushed = None, act.unplanned_push
             self._is_anew = False
 
-    def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Advice:
+    def bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Advice:
         """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
         # Only over squares that are surely free.
         no_way = Infeasibility(False, f"no simple way brings {node.name} there")
@@ -231,7 +228,7 @@ class PlanExecutor:
     # -- when a plan fails -----------------------------------------------------------------------
 
     def _react(self, plan: RemainingPlan | None, situation: Situation, other_way: bool) -> Advice:
-        """Return what to do when a motion did not move the held object, as planner/asp/deciding/contacts.lp chooses."""
+        """Return what to do when a motion did not move the held object, as planner/asp/deciding/hand.lp chooses."""
         # An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
         # degree off, for it is pushed against it as well. Nothing is to be done when nothing failed, or when nothing is
         # held: then a grasp that the plan, which no longer holds, relied on is marked as failed.
@@ -249,7 +246,7 @@ class PlanExecutor:
         facts = [f"holds({name})", *resistance(held), f"contacts({name},{self._contacts.get(name, 0)})"]
         given = {"inexact": held.inexact, "drawable": drawable, "other_way": other_way}
         question = situation.question.adding([*facts, *(f"{fact}({name})" for fact, is_so in given.items() if is_so)])
-        answer = question.answer("contacts") or ()
+        answer = question.answer("hand") or ()
         if any(atom.name == "misgrasped" for atom in answer):
             self.failed.record(held, model)
         reflex = str(argument(answer, "react"))

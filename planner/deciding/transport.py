@@ -20,7 +20,7 @@ from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.open_facts import proof_if_not_found
 from utak.planner.carrying.plan_executor import Advice
-from utak.planner.carrying.preconditions import doubt_of_frame, doubts_of_thing
+from utak.planner.carrying.preconditions import doubt_of_frame, doubts_of_thing, resistance
 from utak.planner.deciding.search import subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.trials import Refusal, RefusalChecks
@@ -33,6 +33,7 @@ from utak.planner.goals.placement import Placement, meets_any_end, robot_can_lea
 from utak.planner.goals.robot_goals import unknown_destination
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.per_model import PerModel
+from utak.planner.question import Question
 from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.situation import Situation
 from utak.planner.skills.press import Presser
@@ -114,8 +115,8 @@ class Transporter:
             advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
         turn = turn.within(turn.situation.along_with(node.patch)) if land.shut_in else turn
         if isinstance(advice, See):
-            along = None if turn.situation.minds_doors(node.name) else partial(_take_along, node, turn)
-            return turn.see(advice, along)
+            facts = [f"end_known({node.name})", *[f"minds_doors({node.name})"] * turn.situation.minds_doors(node.name)]
+            return turn.see(advice, partial(_take_along, node, facts, turn))
         # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
         if self.checks.is_probing(node, turn):
             refusal = Refusal(node, land.must_reach.ends() or land.ends, advice)
@@ -208,12 +209,16 @@ class Transporter:
         """Return the next command to see where an object shall end, or another way there; or the verdict."""
         # Where a door may be is looked at from places where the object would be in the way, and another way is looked
         # for without it.
-        stays = turn.situation.minds_doors(node.name) and not land.shut_in
-        fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(turn.situation.model))
-        again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
-        along = partial(_take_along, node, turn, fetch=fetch)
-        brought = None if land.there or again or stays else along
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, refused.proof(), brought))
+        end_known = bool(land.viewpoints or land.ends) or orientation_is_uncertain(turn.situation.model)
+        given = {
+            "in_place": land.there,
+            "minds_doors": turn.situation.minds_doors(node.name),
+            "end_known": end_known,
+            "shuts_in": land.shut_in,
+            "taken_before": land.shut_in and self._has_taken_along,
+        }
+        along = partial(_take_along, node, [f"{fact}({node.name})" for fact, is_so in given.items() if is_so], turn)
+        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, refused.proof(), along))
         self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
@@ -277,13 +282,18 @@ class Transporter:
 
     def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision:
         """Return the push after which the held object no longer shuts the robot in; nothing where there is none."""
-        if not shut_in and robot_can_leave(node, turn.situation):
-            return nothing_to_do(f"{node.name} does not shut the robot in")
-        out = turn.executor.lead_out(node, turn.situation)
-        if not isinstance(out, Act):
-            return nothing_to_do(f"no push leads {node.name} out")
-        self._presser.forget()
-        return turn.act(out)
+        shuts_in = shut_in or not robot_can_leave(node, turn.situation)
+        facts = [f"lets_go({node.name})", *[f"shuts_in({node.name})"] * shuts_in]
+
+        def out() -> Decision:
+            """Return the push; nothing where geometry finds none."""
+            found = turn.executor.lead_out(node, turn.situation)
+            if not isinstance(found, Act):
+                return nothing_to_do(f"no push leads {node.name} out")
+            self._presser.forget()
+            return turn.act(found)
+
+        return turn.react(facts, {"lead_out": out}) if shuts_in else nothing_to_do("the robot is not shut in")
 
 
 def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn) -> Decision:
@@ -291,18 +301,34 @@ def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn)
     looks = land.by_the_way.viewpoints() if isinstance(planned.command, Push) else []
     if not looks:
         return nothing_to_do("nothing is to be seen by the way")
-    regions = {name: end for name, end in land.ends.items() if isinstance(end, Inside)}
-    push = turn.executor.detour(node, [look.squares for look in looks], regions, turn.situation)
-    return _push_to_see(push, looks[0].what, turn)
+
+    def detour() -> Decision:
+        """Return the push; nothing where geometry finds none."""
+        regions = {name: end for name, end in land.ends.items() if isinstance(end, Inside)}
+        push = turn.executor.detour(node, [look.squares for look in looks], regions, turn.situation)
+        return _push_to_see(push, looks[0].what, turn)
+
+    return turn.react([f"pushed_on({node.name})"], {"detour": detour})
 
 
-def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision:
+def _take_along(node: Node, facts: Sequence[str], turn: StageTurn, subgoal: Subgoal, question: Question) -> Decision:
     """Return the next command to take an object to a subgoal; nothing when the robot had better walk there alone."""
-    advice = turn.executor.take_along(node, subgoal.squares, fetch, turn.situation)
-    if isinstance(advice, Go):
-        go = replace(advice, why=f"{node.name} is fetched, to be taken along: {subgoal.what}")
-        return command_or_nothing(turn.go(go))
-    return _push_to_see(advice, subgoal.what, turn)
+    turn, executor = turn.within(replace(turn.situation, question=question)), turn.executor
+
+    def take() -> Decision:
+        """Return the push with the object in hand; nothing where geometry finds none."""
+        return _push_to_see(executor.take_along(node, subgoal.squares, turn.situation), subgoal.what, turn)
+
+    def fetch() -> Decision:
+        """Return the next command to bring the object near; nothing where geometry finds no simple way."""
+        advice = executor.bring_near(node, subgoal.squares, turn.situation)
+        if isinstance(advice, Go):
+            go = replace(advice, why=f"{node.name} is fetched, to be taken along: {subgoal.what}")
+            return command_or_nothing(turn.go(go))
+        return _push_to_see(advice, subgoal.what, turn)
+
+    given = [f"looks_away({node.name})", *resistance(node), *facts]
+    return turn.react(given, {"take_along": take, "fetch": fetch})
 
 
 def _push_to_see(advice: Advice, what: str, turn: StageTurn) -> Decision:
@@ -328,6 +354,5 @@ def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> De
     ]
     if not any(inside):
         return nothing_to_do(f"{node.name} would not stay where it is")
-    return _push_to_see(
-        turn.executor.take_along(node, look.squares[np.array(inside)], False, turn.situation), look.what, turn
-    )
+    near = look._replace(squares=look.squares[np.array(inside)])
+    return _take_along(node, [f"end_known({node.name})"], turn, near, turn.situation.question)

@@ -10,7 +10,7 @@ CHOICES = {
     ("activities", "verdicts"): {"do", "stuck", "stage_attained", "suppose", "depends", "verdict"},
     ("subgoals",): {"choose"},
     ("senses",): {"sense"},
-    ("contacts",): {"react", "misgrasped"},
+    ("hand",): {"react", "misgrasped"},
     ("senses", "steps"): {"begun", "sense"},
     ("walks",): {"step", "walked"},
 }

@@ -29,6 +29,7 @@ from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import Decision, TaskVerdict
 from utak.planner.goals.placement import Placement, to_view_frame
 from utak.planner.navigation.subgoals import Subgoal
+from utak.planner.question import NO_QUESTION
 from utak.planner.screen.projection import SquareIndices
 from utak.planner.sights.frontiers import Viewpoint
 from utak.planner.situation import Situation
@@ -88,7 +89,7 @@ class AskingExecutor:
         self._executor, self._squares = executor, squares
 
     def advise(self, *_: object) -> Advice:
-        return See(Viewpoint(self._squares, "the way is not clear"))
+        return See(Viewpoint(self._squares, "the way is not clear"), NO_QUESTION)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._executor, name)
