@@ -17,6 +17,7 @@ CASES = {
     "01_look_at_all": ("push_brick_through_door", OUTLINE, True),
     "02_trust_long_ways": ("push_l_tight_door", WAY, False),
     "03_way_first": ("push_brick_regrasp", WAY, True),
+    "05_walk_alone": ("push_brick_through_door", "o1 is fetched", False),
 }
 REFLEX = "04_not_drawn_back"  # tests/planner/deciding/test_taking.py tries it
 
