@@ -341,7 +341,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
             (name, 1): (NODE_ARGUMENT,)
             for names in (
                 "due vague in_way bars goes_on turned_next inexact drawable other_way misgrasped unmoving looks_away",
-                "in_place end_known minds_doors shuts_in taken_before lets_go pushed_on stays",
+                "in_place end_known minds_doors shuts_in taken_before lets_go pushed_on stays circles",
             )
             for name in names.split()
         },

@@ -190,7 +190,10 @@ class Transporter:
     def _act(self, advice: Act, node: Node, turn: StageTurn) -> Decision:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
         if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
-            advice = turn.executor.release_looping(turn.situation.model)
+            looping = turn.executor.release_looping
+            let_go = turn.react([f"circles({node.name})"], {"let_go": lambda: turn.act(looping(turn.situation.model))})
+            if let_go:
+                return let_go
         grasps = isinstance(advice.command, Move | Grasp)
         if grasps and (look := turn.make_sure(doubt_of_frame(node, turn.executor.turns, turn.situation))):
             return look
