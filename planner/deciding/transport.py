@@ -64,10 +64,9 @@ class Transporter:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
         node = turn.situation.object_of(str(goal.args[0]))
         if node is None:
-            return self._freed(self._find(goal, turn), goal, turn)
+            return self._find(goal, turn)
         examined = self._examine(goal, node, turn)
-        decision = self._carry(goal, node, turn, end) if examined.result == "idle" else examined
-        return self._freed(decision, goal, turn)
+        return self._carry(goal, node, turn, end) if examined.result == "idle" else examined
 
     def _examine(self, goal: Fact, node: Node, turn: StageTurn) -> Decision:
         """Return the next look at the object of a goal of which something is not clear; nothing when all is clear."""
@@ -102,7 +101,7 @@ class Transporter:
         advice = self._advice(node, land, turn)
         if isinstance(advice, Infeasibility) and land.loose:
             if meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation)):
-                return self._released_well(node, turn) or done(f"{goal} holds")
+                return done(f"{goal} holds")
             advice = turn.executor.advise(node, land.loose, turn.situation)
         if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
@@ -143,15 +142,6 @@ class Transporter:
     def conflict(self, stage: Stage, situation: Situation) -> Decision:
         """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once."""
         return conflict(stage, situation, self.place, self.origin_of)
-
-    def _freed(self, decision: Decision, goal: Fact, turn: StageTurn) -> Decision:
-        """Return a decision; in its place the push after which the held object no longer shuts the robot in."""
-        held = turn.situation.model.object(turn.situation.model.held or "")
-        if decision.result in ("idle", "done") or held is None:
-            return decision
-        if held.name == turn.situation.binding.get(str(goal.args[0])):
-            return decision
-        return self._lead_out(held, turn) or decision
 
     def _find(self, goal: Fact, turn: StageTurn) -> Decision:
         """Return the next command to find what the parameter of a goal means, or the verdict if nothing can be."""
@@ -226,8 +216,6 @@ class Transporter:
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
             decision = Decision(None, why, TaskVerdict.LIMIT)
-        if decision.verdict == TaskVerdict.LIMIT:
-            decision = self._lead_out(node, turn, land.shut_in) or decision
         return decision
 
     def _check_proof(
@@ -266,37 +254,30 @@ class Transporter:
         return Infeasibility(not situation.model.shaken, land.missing)
 
     def led_out(self, decision: Decision, turn: StageTurn) -> Decision:
-        """Return a decision; in place of a release the push after which what is held no longer shuts the robot in."""
-        held = turn.situation.model.object(turn.situation.model.held or "")
-        if not isinstance(decision.command, Release) or turn.situation.model.lost or held is None or not held.polygon:
+        """Return a decision; in place of a release, or of giving up, the push after which the robot is not shut in."""
+        model = turn.situation.model
+        held = model.object(model.held or "")
+        gives_up = decision.verdict not in (None, TaskVerdict.DONE)
+        if not (gives_up or isinstance(decision.command, Release)) or model.lost or held is None or not held.polygon:
             return decision
-        out = self._lead_out(held, turn)
-        return decision if out.command is None or turn.closes_loop(out.command) else out
-
-    def _press_on(self, node: Node, turn: StageTurn) -> Decision:
-        """Return the next press of a held object against a wall; when none is left, what leads it out; or nothing."""
-        if self._presser.has_next(node):
-            return turn.act(self._presser.next(node, turn.situation.model))
-        return self._released_well(node, turn)
-
-    def _released_well(self, node: Node, turn: StageTurn) -> Decision:
-        """Return what leads a held object out where it shuts in a robot that has more to do; else nothing."""
-        return self._lead_out(node, turn) if turn.stage.goes_on else nothing_to_do("the robot has nothing more to do")
-
-    def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision:
-        """Return the push after which the held object no longer shuts the robot in; nothing where there is none."""
-        shuts_in = shut_in or not robot_can_leave(node, turn.situation)
-        facts = [f"lets_go({node.name})", *[f"shuts_in({node.name})"] * shuts_in]
+        if robot_can_leave(held, turn.situation):
+            return decision
 
         def out() -> Decision:
-            """Return the push; nothing where geometry finds none."""
-            found = turn.executor.lead_out(node, turn.situation)
-            if not isinstance(found, Act):
-                return nothing_to_do(f"no push leads {node.name} out")
+            """Return the push; nothing where geometry finds none, or where it would close a loop."""
+            push = turn.executor.lead_out(held, turn.situation)
+            if not isinstance(push, Act) or turn.closes_loop(push.command):
+                return nothing_to_do(f"no push leads {held.name} out")
             self._presser.forget()
-            return turn.act(found)
+            return turn.act(push)
 
-        return turn.react(facts, {"lead_out": out}) if shuts_in else nothing_to_do("the robot is not shut in")
+        return turn.react([f"lets_go({held.name})", f"shuts_in({held.name})"], {"lead_out": out}) or decision
+
+    def _press_on(self, node: Node, turn: StageTurn) -> Decision:
+        """Return the next press of a held object against a wall; nothing where none is left."""
+        if self._presser.has_next(node):
+            return turn.act(self._presser.next(node, turn.situation.model))
+        return nothing_to_do(f"{node.name} is pressed")
 
 
 def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn) -> Decision:

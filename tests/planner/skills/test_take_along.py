@@ -132,7 +132,8 @@ def exploring(situation: Situation, squares: SquareIndices, viewpoints: bool, to
     nowhere = Placement({}, "it is not seen yet", looks if viewpoints else ())
     subgoals = [Subgoal(SubgoalKind.EXPLORE, squares, "it goes on unseen")]
     (goal,) = facts_from_text("around(x, corner).")
-    return transporter_where(nowhere, subgoals).towards(goal, turn_of(Stage((goal,)), situation, tools))
+    transporter, turn = transporter_where(nowhere, subgoals), turn_of(Stage((goal,)), situation, tools)
+    return transporter.led_out(transporter.towards(goal, turn), turn)
 
 
 def transporter_where(land: Placement, subgoals: list[Subgoal]) -> Transporter:
@@ -247,9 +248,9 @@ def test_an_object_that_shuts_the_robot_in_is_taken_along_once() -> None:
     subgoals = [Subgoal(SubgoalKind.INSPECT, looks[0].squares, looks[0].what)]
     transporter, tools = transporter_where(land, subgoals), tools_with()
     (goal,) = facts_from_text("at(x, corner(northeast)).")
-    stage = Stage((goal,))
-    decisions = [transporter.towards(goal, turn_of(stage, situation, tools)) for _ in range(2)]
-    assert [decision and decision.command for decision in decisions] == [Push(-5.0, -5.0), Push(-1.0, 0.0)]
+    turn = turn_of(Stage((goal,)), situation, tools)
+    decisions = [transporter.led_out(transporter.towards(goal, turn), turn) for _ in range(2)]
+    assert [decision.command for decision in decisions] == [Push(-5.0, -5.0), Push(-1.0, 0.0)]
 
 
 def test_a_robot_that_is_at_a_loss_and_not_shut_in_gives_up() -> None:
