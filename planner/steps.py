@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from utak.geometry.kernels.arrays import XY
 from utak.geometry.manipulation.plan_carrying import Leg
-from utak.geometry.motion.se2 import Motion, Rotate
+from utak.geometry.motion.se2 import Motion, Rotate, Translate
 from utak.kb.body import Command, Grasp, Move, Push, Turn
 from utak.kb.language.vocabulary import ANY_SIDE
 from utak.kb.world.model import WorldModel, hundredths
@@ -52,6 +52,11 @@ def release(thing: str) -> RobotStep:
 def grasp(thing: str, direction: str) -> RobotStep:
     """Return the step that a thing is grasped which lies in a direction."""
     return _step("grasp", thing, direction)
+
+
+def press(thing: str, push: Translate, model: WorldModel) -> RobotStep:
+    """Return the step that a thing in hand is pressed against a wall by a push, map frame."""
+    return _step("press", thing, *map(hundredths, model.frame.to_utak(push.dx, push.dy)))
 
 
 def motion_of(thing: str, motion: Motion, model: WorldModel) -> RobotStep:

@@ -73,7 +73,9 @@ def _is_first(action: Mapping[str, Any], step: str) -> bool:
     if action["do"] in ("push", "turn"):
         done = [action["degrees"]] if action["do"] == "turn" else [action["east"], action["north"]]
         told = [int(argument) / 100 for argument in arguments[1:]]
-        return name == action["do"] and all(abs(a - b) <= HALF_A_HUNDREDTH for a, b in zip(done, told, strict=True))
+        return name in (action["do"], {"push": "press"}.get(action["do"])) and all(
+            abs(a - b) <= HALF_A_HUNDREDTH for a, b in zip(done, told, strict=True)
+        )
     return name == {"move": "go", "release": "release"}[action["do"]]
 
 
@@ -83,7 +85,7 @@ def _not_possible(steps: Sequence[str], held: str | None) -> Iterator[str]:
         name, arguments = atom_parts(step)
         if name in ("go", "grasp") and held is not None:
             yield f"{step} with {held} in hand"
-        if name in ("push", "turn", "release") and held != arguments[0]:
+        if name in ("push", "press", "turn", "release") and held != arguments[0]:
             yield f"{step} with {held} in hand"
         held = arguments[0] if name == "grasp" else None if name == "release" else held
 

@@ -252,6 +252,7 @@ ROBOT_STEPS: Mapping[str, tuple[tuple[ArgumentType, ...], str]] = {
     "feel": ((LENGTH_ARGUMENT, LENGTH_ARGUMENT), "it feels what is beside POINT ({} {})"),
     "grasp": ((OBJECT_ARGUMENT, word_argument("direction", (*DIRECTIONS, ANY_SIDE))), "{} is grasped, to the {}"),
     "push": ((OBJECT_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), "{} is pushed by ({} {})"),
+    "press": ((OBJECT_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), "{} is pressed against a wall, by ({} {})"),
     "turn": ((OBJECT_ARGUMENT, LENGTH_ARGUMENT), "{} is turned by {} degrees"),
     "release": ((OBJECT_ARGUMENT,), "{} is released"),
 }

@@ -327,7 +327,7 @@ class Activities:
 
 def _under_way(decision: Decision, name: str, turn: StageTurn) -> RemainingPlan | None:
     """Return what is left of the plan with an object that a decision goes on with; None where it moves it by none."""
-    moves = any(step.name in ("push", "turn") and step.args[0] == name for step in decision.steps)
+    moves = any(step.name in ("push", "press", "turn") and step.args[0] == name for step in decision.steps)
     return turn.executor.plan_of(name) if moves else None
 
 

@@ -6,6 +6,7 @@ walls is in the corner, whatever is believed of its outline then.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from utak.planner.advice import Act, unplanned_act
 from utak.planner.goals.placement import Placement
 from utak.planner.goals.robot_goals import corner_side
 from utak.planner.situation import Situation
+from utak.planner.steps import press
 
 STOPPED_SHORT = 0.1  # squares by which a push that was stopped falls short at least; a convention, above rounding
 CORNER_SHIFT = 2.0  # squares by which a corner may seem to move when a press shows more of its walls; tuned
@@ -68,7 +70,7 @@ class Presser:
         push = self._left.pop(0)
         self._last, self._is_new = (push, (node.polygon.centroid.x, node.polygon.centroid.y)), True
         why = f"{node.name} is pressed against the wall, to be sure that it is there"
-        return unplanned_act(push, why, model)
+        return replace(unplanned_act(push, why, model), steps=(press(node.name, push, model),))
 
 
 def _corner_of(goal: Fact, situation: Situation) -> XY:
