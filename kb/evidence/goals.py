@@ -18,7 +18,7 @@ CHOICES = {  # the predicates of its choices, and what was chosen, in words
     "do": "this activity was chosen",
     "choose": "this subgoal was chosen",
     "sense": "this was to be seen or felt first",
-    "react": "this was chosen for what did not move",
+    "react": "this was chosen for what is carried, beside its plan",
     "walked": "this way was chosen, before it was pulled tight",
 }
 

@@ -30,9 +30,7 @@ class Verifier:
 
     def __init__(self) -> None:
         """Remember nothing yet."""
-        self.telling = (
-            ""  # what the robot went to tell last, as planner/asp/deciding/senses.lp calls it; "" for nothing
-        )
+        self.telling = ""  # what the robot went to tell last, in the words of senses.lp; "" for nothing
         self._rechecked: list[XY] = []  # passages that were looked at again, map frame
 
     def recheck_passage(self, refusal: Infeasibility, situation: Situation) -> list[Subgoal]:
