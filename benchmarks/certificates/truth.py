@@ -201,7 +201,7 @@ def _is_at_corner(walk: RecordedWalk, name: str, step: int, thing: str | None) -
             walls = all(occupied(*square, step, thing) for square in ahead)
             if near and walls and (not occupied(i, j, step, thing) or (i, j) == own[-1]):
                 found.append(reach(i, j))
-    seen = [reach(*square) for square in own]
+    seen = [reach(*square) for k, square in enumerate(own) if not occupied(*square, k)]
     cosine, sine = math.cos(heading), math.sin(heading)
     for k, (x, y) in enumerate(own):
         for east, north, side in FIELDS:

@@ -218,7 +218,8 @@ class CertificateCheck:
             further = sum(n for (c, d), n in squares.items() if reach(towards, (p + c, q + d)) > reach(towards, here))
             if k <= step and further > most:
                 return False
-        return all(reach(towards, at) <= reach(towards, here) for at in case.squares[: step + 1])
+        floor = (at for at in case.squares[: step + 1] if at in case.changes or not case.at(at, 0))  # not within a wall
+        return all(reach(towards, at) <= reach(towards, here) for at in floor)
 
     def is_circled(self, name: str, case: Course, step: int) -> bool:
         """Return whether the track ends in the square where it began, which is free, and winds about a thing."""

@@ -453,7 +453,8 @@ const checkCertificate = (() => {
       const reach = ([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n)), square = one.squares[step], limit = reach(square);
       const held = new Set(one.held[step].map(keyOf)), ahead = [from(square, [u > 0n ? 1 : -1, 0]), from(square, [0, v > 0n ? 1 : -1])];
       if (!this.wasFree(one, square) || !ahead.every((other) => this.at(one, other, step) && !held.has(keyOf(other)))) return false;
-      return one.squares.slice(0, step + 1).every((passed, k) => reach(passed) <= limit && turned(one.degrees).fields.every((samples, f) => {
+      const isWall = (other) => !one.changes.has(keyOf(other)) && this.at(one, other, 0);
+      return one.squares.slice(0, step + 1).every((passed, k) => (reach(passed) <= limit || isWall(passed)) && turned(one.degrees).fields.every((samples, f) => {
         if (f === OWN) return true;
         const further = samples.filter((sample) => sample !== null && reach(from(passed, sample)) > limit).length;
         return further <= countsOf(this.steps[k].retina[f], samples.length)[1];

@@ -81,6 +81,13 @@ def test_the_cases_along_the_grid_show_a_corner(tmp_path: Path) -> None:
     assert shown(found, stated) == "done: at(utak,corner(northeast)) at step 1; given along(grid)"
 
 
+def test_a_square_of_the_wall_in_which_the_robot_was_stopped_is_no_floor(tmp_path: Path) -> None:
+    way = [Move(1.0, 0.0), Move(0.0, 3.0), Move(0.0, -0.3)]
+    found = walk(tmp_path, ROOM.replace(".U", "U."), way, "at(utak,corner(northeast))")
+    assert found.places[2][1] == 6.0  # its square is the one beyond
+    assert shown(found, json.loads(found_certificate(found))).startswith("done: at(utak,corner(northeast)) at step 3")
+
+
 def without(cases: list[Any], word: str) -> None:
     """Take all lines of a kind away."""
     cases[:] = [line for line in cases if line[0] != word]
