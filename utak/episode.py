@@ -17,6 +17,7 @@ from utak.simulator.episode.output_files import is_episode, write_whole
 from utak.simulator.explaining.missing_rules import rule_paths
 from utak.simulator.explaining.questions import Questions, questions_of_episode
 from utak.simulator.replay.drawing import step_svg
+from utak.simulator.scenario.settings import USUAL_RISK
 from utak.simulator.terminal.action_in_words import describe
 
 MAX_STEPS_SHOWN = 200  # steps of an episode that a notebook lists; a convention
@@ -173,8 +174,13 @@ class Episode(Sequence[Step]):
         """
         write_whole(path, "".join(self._lines).encode("ascii"), is_episode, "episode", force)
 
-    def certificate(self) -> str:
+    def certificate(self, risk: float = USUAL_RISK) -> str:
         """Return why the verdict follows from what was seen, felt and commanded, as a file for `utak verify`.
+
+        Parameters
+        ----------
+        risk : float
+            With noise: how likely it may be wrong, at most, in percent, 0.0001 to 99. Without noise it has none.
 
         Returns
         -------
@@ -184,9 +190,9 @@ class Episode(Sequence[Step]):
         Raises
         ------
         NoCertificateError
-            There is no certificate: the verdict is not `done`, or nothing shows it; the message says why.
+            There is none: the verdict is neither `done` nor `impossible`, or nothing shows it; the message says why.
         """
-        return certificate_of(self._lines, self.verdict)
+        return certificate_of(self._lines, self.verdict, risk)
 
     @property
     def _lines(self) -> list[str]:

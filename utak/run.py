@@ -18,7 +18,7 @@ from utak.scenario import Scenario
 from utak.simulator.episode.record import action_entry
 from utak.simulator.run.robots import make_robot
 from utak.simulator.run.story import live_story
-from utak.simulator.scenario.settings import PATH_CHOICES, Settings, kb_files_named
+from utak.simulator.scenario.settings import PATH_CHOICES, USUAL_RISK, Settings, kb_files_named
 from utak.simulator.terminal.action_in_words import describe
 
 
@@ -167,15 +167,20 @@ class Run:
             pass
         return self.episode
 
-    def certificate(self) -> str:
+    def certificate(self, risk: float = USUAL_RISK) -> str:
         """Return why the verdict follows, as `Episode.certificate` does; raises NoCertificateError where nothing does.
+
+        Parameters
+        ----------
+        risk : float
+            With noise: how likely it may be wrong, at most, in percent, 0.0001 to 99. Without noise it has none.
 
         Returns
         -------
         str
             A JSON text (docs/certificates.md).
         """
-        return self.episode.certificate()
+        return self.episode.certificate(risk)
 
     def fork(
         self,

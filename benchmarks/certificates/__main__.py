@@ -3,16 +3,18 @@
 python -m benchmarks.certificates --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --rooms --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --doors --count 100 --seed 0 --mutants 20
+python -m benchmarks.certificates --noise 0.05 --risk 1 --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --impossible --count 4 --seed 0 -o FILE
 
-Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out; with
---doors, walks and pushes through doors, and through what looks like one, claim to have led into the next room. Each
-that a certificate is found for is held against the truth, and so are mutants of the certificate that are accepted.
-Where none is found one is forged, for a checker that takes any goal to hold, and is held, with mutants of it, against
-the checker as it is. Whether the rules allow what really happened is asked of all. The exit code is 1 when an accepted
-claim is false, or when what happened is excluded. With --impossible the robot runs in worlds in which its task cannot
-be done, so many of each kind, and those are counted in which a certificate shows that; worlds that the FILE has are not
-run again.
+Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out;
+with --doors, walks and pushes through doors, and through what looks like one, claim to have led into the next room.
+Each that a certificate is found for is held against the truth, and so are mutants of the certificate that are
+accepted. Where none is found one is forged, for a checker that takes any goal to hold, and is held, with mutants of
+it, against the checker as it is. Whether the rules allow what really happened is asked of all. With --noise the share
+of walks is counted, too, in which noise led further than the risk allows for; what is false there is not held against
+the checker. The exit code is 1 when an accepted claim is false, or when what happened is excluded. With --impossible
+the robot runs in worlds in which its task cannot be done, so many of each kind, and those are counted in which a
+certificate shows that; worlds that the FILE has are not run again.
 """
 
 import argparse
@@ -35,9 +37,10 @@ from benchmarks.certificates.truth import holds, is_given, lost_truth
 from benchmarks.certificates.unable import run_unable
 from utak.simulator.certificates import search
 from utak.simulator.certificates.checker import OWN_NAME, CertificateCheck, goal_of, verify
-from utak.simulator.certificates.courses import RefusedError
+from utak.simulator.certificates.courses import MILLION, RefusedError
 from utak.simulator.certificates.doors import door_shown
 from utak.simulator.certificates.search import NoCertificateError, certificate_of
+from utak.simulator.scenario.settings import USUAL_RISK
 
 FALSE = "FALSE"  # of a claim that was accepted
 BARE_DOOR = [[3, -1, 3, 0], [-1, -2, 2, 2], [4, -2, 7, 2]]  # of a forged certificate, before it is changed at random
@@ -51,6 +54,8 @@ def main() -> int:
     parser.add_argument("--rooms", action="store_true", help="rooms that nothing gets out of, in place of goals done")
     parser.add_argument("--doors", action="store_true", help="goals of the next room, in place of others")
     parser.add_argument("--truth-alone", action="store_true", help="only whether the rules allow what happened")
+    parser.add_argument("--noise", type=float, default=0.0, help="of the motions")
+    parser.add_argument("--risk", type=float, default=USUAL_RISK, help="of the certificates, percent")
     parser.add_argument("--mutants", type=int, default=0, help="of each certificate")
     parser.add_argument("--impossible", action="store_true", help="runs in which the task cannot be done")
     parser.add_argument("-o", "--output", type=Path, help="of --impossible: a JSON line for each world")
@@ -60,14 +65,16 @@ def main() -> int:
     counts: Counter[str] = Counter()
     times: dict[str, list[float]] = {"found in": [], "checked in": [], "kilobytes": []}
     for seed in range(options.seed, options.seed + options.count):
-        walk = (drawn_room if options.rooms else drawn_doors if options.doors else drawn_walk)(seed)
-        if lost := lost_truth(walk):
-            counts[f"{FALSE}: what happened is excluded"] += 1
+        walk = (drawn_room if options.rooms else drawn_doors if options.doors else drawn_walk)(seed, options.noise)
+        risk = int(options.risk * MILLION / 100)
+        counts["noise is beyond the risk"] += walk.is_beyond(risk)
+        if lost := lost_truth(walk, risk):
+            counts[_by_noise(walk, risk, "what happened is excluded")] += 1
             print(seed, "what happened is excluded:", lost, flush=True)
         else:
             counts["what happened is allowed"] += 1
         if not options.truth_alone:
-            _count(walk, "impossible" if options.rooms else "done", seed, options.mutants, counts, times)
+            _count(walk, "impossible" if options.rooms else "done", seed, options, counts, times)
     print(dict(sorted(counts.items())))
     for what, values in times.items():
         if values:
@@ -76,15 +83,20 @@ def main() -> int:
 
 
 def _count(
-    walk: RecordedWalk, claim: str, seed: int, number: int, counts: Counter[str], times: dict[str, list[float]]
+    walk: RecordedWalk,
+    claim: str,
+    seed: int,
+    options: argparse.Namespace,
+    counts: Counter[str],
+    times: dict[str, list[float]],
 ) -> None:
     """Count what becomes of the certificate of a walk, of mutants of it, and of forged ones."""
     lines, goal, begun = walk.text.splitlines(keepends=True), " ".join(walk.goals), time.perf_counter()
     try:
-        text = certificate_of(lines, claim)
+        text = certificate_of(lines, claim, options.risk)
     except NoCertificateError:
         counts[f"{goal}: none"] += 1
-        _count_forged(walk, claim, seed, number, counts)
+        _count_forged(walk, claim, seed, options, counts)
         return
     found = time.perf_counter()
     verify(walk.text, text)
@@ -95,19 +107,19 @@ def _count(
     outcome = _outcome(walk, stated)
     counts[f"{goal}: {outcome}"] += 1
     print(seed, goal, walk.world.heading, outcome, stated["given"], f"{found - begun:.1f} s", flush=True)
-    for mutant in mutants(stated, number, seed):
+    for mutant in mutants(stated, options.mutants, seed):
         counts[f"mutant: {_of_mutant(walk, mutant, stated)}"] += 1
 
 
-def _count_forged(walk: RecordedWalk, claim: str, seed: int, number: int, counts: Counter[str]) -> None:
+def _count_forged(walk: RecordedWalk, claim: str, seed: int, options: argparse.Namespace, counts: Counter[str]) -> None:
     """Count what becomes of a certificate that was made for a checker that takes every goal to hold, and of mutants."""
     forging = dict.fromkeys(("is_shown", "is_barred", "holds"), lambda *_: True)
     try:
         with patch.multiple(CertificateCheck, **forging), patch.object(search, "door_shown", _forged_door):
-            stated = json.loads(certificate_of(walk.text.splitlines(keepends=True), claim))
+            stated = json.loads(certificate_of(walk.text.splitlines(keepends=True), claim, options.risk))
     except NoCertificateError:
         return
-    for mutant in (stated, *mutants(stated, number, seed)):
+    for mutant in (stated, *mutants(stated, options.mutants, seed)):
         outcome = _of_mutant(walk, mutant, None)
         counts[f"forged: {outcome}"] += 1
         if FALSE in outcome:
@@ -125,13 +137,19 @@ def _outcome(walk: RecordedWalk, stated: dict[str, Any]) -> str:
         return "given is false"
     goal = walk.goals[0]
     if stated["claim"] == "done":
-        return "true" if holds(walk, goal, stated["steps"][0], stated["meaning"]) else FALSE
+        is_true = holds(walk, goal, stated["steps"][0], stated["meaning"])
+        return "true" if is_true else _by_noise(walk, stated["risk"], "claim")
     steps = zip(walk.goals, stated["steps"], strict=True)
     told = [goal_of(goal, "impossible") for goal, step in steps if step is not None]
     what = told[0][1]
     name = what if what == OWN_NAME else walk.felt(*stated["meaning"][what]) or ""
     answer = gets_out(walk, name) if told[0][0] == "room" else meets_corners(walk, name, [one[2] for one in told])
-    return {"yes": FALSE, "no": "true", "open": "not known to be false"}[answer]
+    return {"yes": _by_noise(walk, stated["risk"], "claim"), "no": "true", "open": "not known to be false"}[answer]
+
+
+def _by_noise(walk: RecordedWalk, risk: int, what: str) -> str:
+    """Return that something is false, or that it is so by noise for which the risk is taken."""
+    return f"by noise beyond the risk: {what}" if walk.is_beyond(risk) else f"{FALSE}: {what}"
 
 
 def _of_mutant(walk: RecordedWalk, mutant: dict[str, Any], origin: dict[str, Any] | None) -> str:

@@ -39,7 +39,7 @@ class RowOfCells(NamedTuple):
     openings: list[list[DrawnGap]]
 
 
-def drawn_doors(seed: int) -> RecordedWalk:
+def drawn_doors(seed: int, noise: float = 0.0) -> RecordedWalk:
     """Return a walk or a push that seems to lead into the next room."""
     random = np.random.default_rng([29, seed])
     carries = random.random() < 0.5
@@ -68,7 +68,7 @@ def drawn_doors(seed: int) -> RecordedWalk:
     what = "x" if carries else "utak"
     goals = [f"{goal}({what},{'d' if goal == 'through' else 'room(next)'})"]
     commands = _commands(world, way, carries)
-    walk = recorded_walk(world, commands, goals, parameters=("x", "y"), doors=("d",))
+    walk = recorded_walk(world, commands, goals, parameters=("x", "y"), doors=("d",), noise=(noise, seed))
     return replace(walk, rooms=rooms)
 
 

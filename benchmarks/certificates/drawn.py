@@ -21,7 +21,7 @@ MAX_TRIES = 1000  # of a place for the robot
 Walk = tuple[list[Command], str]  # and the goal that it is said to attain
 
 
-def drawn_walk(seed: int) -> RecordedWalk:
+def drawn_walk(seed: int, noise: float = 0.0) -> RecordedWalk:
     """Return a walk in a random world that attains its goal, or seems to."""
     random = np.random.default_rng([17, seed])
     world = _world(random)
@@ -29,7 +29,7 @@ def drawn_walk(seed: int) -> RecordedWalk:
     draw = walks[seed % len(walks)]
     world = _beside_thing(random, world) if draw is _carrying else world
     commands, goal = draw(random, world)
-    return recorded_walk(world, commands, [goal], parameters=("x", "y"))
+    return recorded_walk(world, commands, [goal], parameters=("x", "y"), noise=(noise, seed))
 
 
 def _near_grid(random: np.random.Generator, low: float, high: float) -> float:

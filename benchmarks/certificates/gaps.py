@@ -22,7 +22,7 @@ FURTHEST_SEEN = 24.0  # squares: no field reaches further
 FEELING_STRIDE = 2.0  # squares between halts along the walls, so that each square of them is felt
 
 
-def drawn_room(seed: int) -> RecordedWalk:
+def drawn_room(seed: int, noise: float = 0.0) -> RecordedWalk:
     """Return a walk along all walls of a room, beside a thing first, and often with something carried at the end."""
     random = np.random.default_rng([23, seed])
     width, height = (int(n) for n in random.integers(7, 12, 2))
@@ -59,7 +59,7 @@ def drawn_room(seed: int) -> RecordedWalk:
         what, names = str(more.choice(["utak", "x"])), more.choice(list(CORNERS), 2, replace=False)
         second = str(more.choice([f"at({what},corner({names[1]}))", f"at({what},start)"]))
         goals = [f"at({what},corner({names[0]}))", second][: int(more.integers(1, 3))]
-    return recorded_walk(world, commands, goals)
+    return recorded_walk(world, commands, goals, noise=(noise, seed))
 
 
 def meets_corners(walk: RecordedWalk, name: str, corners: Sequence[str]) -> str:

@@ -8,14 +8,12 @@ from typing import Any
 import numpy as np
 import shapely
 
-from benchmarks.certificates.recorded import RecordedWalk
+from benchmarks.certificates.recorded import SLACK, RecordedWalk
 from utak.geometry.counts.retina import FIELDS
 from utak.simulator.certificates.checker import OWN_NAME, goal_of
-from utak.simulator.certificates.courses import Evidence, RefusedError, waking_case
+from utak.simulator.certificates.courses import RefusedError, waking_case
 from utak.simulator.certificates.search import settle_all
 from utak.simulator.world.table import Table, project
-
-SLACK = 1e-5  # squares; what the checker allows for rounding
 
 
 def is_given(walk: RecordedWalk, given: Sequence[str], cases: Sequence[Sequence[Any]] = ()) -> bool:
@@ -115,9 +113,12 @@ def _covered(walk: RecordedWalk, thing: str, step: int) -> set[tuple[int, int]]:
     return {(part.west + int(i), part.south + int(j)) for j, i in zip(*part.covered.nonzero(), strict=True)}
 
 
-def lost_truth(walk: RecordedWalk) -> str:
-    """Return where the checker's rules exclude what really happened, in words; "" where they never do."""
-    evidence = Evidence(walk.text)
+def lost_truth(walk: RecordedWalk, risk: int = 0) -> str:
+    """Return where the checker's rules exclude what really happened, in words; "" where they never do.
+
+    risk : in millionths, with noise.
+    """
+    evidence = walk.evidence(risk)
     tables = [Table(walk.world.moved(things, walk.places[0])) for things in walk.things]
     quarters, angle = divmod(walk.world.heading, 90)
 
@@ -201,7 +202,7 @@ def _is_at_corner(walk: RecordedWalk, name: str, step: int, thing: str | None) -
             walls = all(occupied(*square, step, thing) for square in ahead)
             if near and walls and (not occupied(i, j, step, thing) or (i, j) == own[-1]):
                 found.append(reach(i, j))
-    seen = [reach(*square) for square in own]
+    seen = [reach(*square) for k, square in enumerate(own) if not occupied(*square, k)]
     cosine, sine = math.cos(heading), math.sin(heading)
     for k, (x, y) in enumerate(own):
         for east, north, side in FIELDS:

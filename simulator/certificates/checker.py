@@ -12,7 +12,7 @@ from typing import Any
 from utak.simulator.certificates import courses
 from utak.simulator.certificates.courses import Course, Evidence, Span, Spot, Spots, refuse, spread
 
-KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "cases")
+KEYS_IN_ORDER = ("utak", "version", "claim", "goals", "steps", "meaning", "given", "risk", "cases")
 GOAL = re.compile(r"(?:(first|then)\()?(\w+)\((\w+),(?:corner\((\w+)\)|(room\(next\)|\w+))\)(?(1)\))")
 BARRED_GOALS = {"at corner()": "corner", "in room(next)": "room", "through ": "room"}
 OTHER_GOALS = {"at start": "start", "at ": "near", "beside ": "near", "circled ": "circled"}
@@ -79,7 +79,7 @@ class CertificateCheck:
     def __init__(self, episode: Evidence, certificate: Any) -> None:
         if not isinstance(certificate, dict) or set(certificate) != set(KEYS_IN_ORDER):
             refuse(f"a certificate has the keys {', '.join(KEYS_IN_ORDER)}, and no others")
-        *head, self.steps, self.meaning, self.given, self.lines = (certificate[key] for key in KEYS_IN_ORDER)
+        *head, self.steps, self.meaning, self.given, self.risk, self.lines = (certificate[key] for key in KEYS_IN_ORDER)
         self.episode, self.claim = episode, head[2]
         texts = [goal for goal in episode.goals if not goal.startswith("prefer(")]
         is_form = repr(head) == repr(["certificate", 1, self.claim, episode.goals])  # of all 1s the whole number alone
@@ -100,6 +100,13 @@ class CertificateCheck:
         granted = [taken, taken + walls] if self.claim == "impossible" else [taken]
         if self.given not in [one + grid for one in granted for grid in ([], [ALONG_GRID])]:
             refuse(f"what it is given must be {granted[-1]}, and perhaps {ALONG_GRID}")
+        self.has_cases = any(goal[:2] != ("near", OWN_NAME) for goal in self.goals)
+        if self.has_cases and episode.hindrance:
+            refuse(f"nothing is said of where the robot is in an episode with {', '.join(episode.hindrance)}")
+        risks = range(1, courses.MILLION) if self.has_cases and episode.noise else range(1)
+        if type(self.risk) is not int or self.risk not in risks:
+            refuse(f"its risk must be {risks[0]} to {risks[-1]} millionths")
+        episode.allow(self.risk)
 
     def check_meaning(self) -> list[str]:
         """Return the claims of the task about things that are taken to be so; refuse unless each thing was felt."""
@@ -125,22 +132,22 @@ class CertificateCheck:
 
     def check(self) -> str:
         """Return what is shown, in words; refuse when the claim does not follow."""
-        if any(goal[:2] != ("near", OWN_NAME) for goal in self.goals):
+        if self.has_cases:
             self.check_cases()
         elif self.lines != []:
             refuse("its goals need no cases, and it has some")
         shown = [f"{text} at step {step}" for text, step in zip(self.texts, self.steps, strict=True)]
         means = [f"{name} is the thing felt at step {k}, touch {n}" for name, (k, n) in self.meaning.items()]
-        return f"{self.claim}: {', '.join([*shown, *means])}" + "; given " * bool(self.given) + ", ".join(self.given)
+        given = "; given " * bool(self.given) + ", ".join(self.given)
+        risk = f", at a risk of {self.risk / 10**4:g} percent" * bool(self.risk)
+        return f"{self.claim}{risk}: {', '.join([*shown, *means])}{given}"
 
     def check_cases(self) -> None:
         """Refuse unless each orientation of the grid and each end of each command is shut or shows the goals."""
-        if self.episode.hindrance or not isinstance(self.lines, list):
-            refuse(f"nothing is said of where the robot is in an episode with {', '.join(self.episode.hindrance)}")
         angle, angles, shown = -1, 1 if ALONG_GRID in self.given else RIGHT_ANGLE, 0
         left: list[dict[Spot, Course]] = []  # of each step: the ends of the command that are still to be treated
         case: Course | None = None  # the one that is treated now; None where the next line must begin one
-        for number, line in enumerate(self.lines):
+        for number, line in enumerate(self.lines if isinstance(self.lines, list) else refuse("its cases are no list")):
             word, args = (line[0], line[1:]) if isinstance(line, list) and line else ("", [])
             if word == "count" and case and all(are_whole(term, 3) for term in args):
                 case = None if case.settle(self.episode, args) else case
@@ -218,7 +225,8 @@ class CertificateCheck:
             further = sum(n for (c, d), n in squares.items() if reach(towards, (p + c, q + d)) > reach(towards, here))
             if k <= step and further > most:
                 return False
-        return all(reach(towards, at) <= reach(towards, here) for at in case.squares[: step + 1])
+        floor = (at for at in case.squares[: step + 1] if at in case.changes or not case.at(at, 0))  # not within a wall
+        return all(reach(towards, at) <= reach(towards, here) for at in floor)
 
     def is_circled(self, name: str, case: Course, step: int) -> bool:
         """Return whether the track ends in the square where it began, which is free, and winds about a thing."""

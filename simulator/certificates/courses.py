@@ -5,11 +5,11 @@ Of a certificate this is what its lines rest on, and `checker` is the rest. Both
 
 import json
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import accumulate, product
-from math import lcm
+from math import isqrt, lcm
 from typing import Any, NamedTuple, NoReturn
 
 FIELD_ZONES = ((4, 0, 1), (8, 4, 2), (16, 8, 4))  # of the retina: reach, reach of the one within, side of fields
@@ -30,6 +30,8 @@ PI_DECIMALS = Fraction("3.14159265358979323846264338327950288")
 DIRECTION_SCALE = 10**18  # cosines and sines are whole numbers of so small parts
 TIE_ERROR = DIRECTION_SCALE // 10**9  # so near to the middle between two squares either may be sampled (axiom 2)
 PLACE_PARTS = 10**6  # of a square: one of them is more than a command may lead beside its way (axiom 4)
+MILLION = 10**6  # a whole risk
+LN_4 = Fraction("1.3863")  # the logarithm of 4, rounded up
 MAX_SQUARES = 20000  # of one command, or in which a thing lies; a bound on time
 MAX_EXPONENT_DIGITS = 4  # with the sign; a bound on time
 
@@ -108,7 +110,16 @@ class Evidence:
         self.ways = [(int(east * parts), int(north * parts)) for east, north in ways]  # of commands, robot frame
         self.unit = DIRECTION_SCALE * parts  # a square: all lengths are whole numbers
         self.hindrance = [key for key in ("forked", "changes", "disturbed") if key in {*head}.union(*steps)]  # axiom 3
-        self.hindrance += [key for key, usual in (("noise", 0), ("kb", [])) if head["options"][key] != usual]
+        self.hindrance += ["kb"] * (head["options"]["kb"] != [])
+        self.noise = Fraction(head["options"]["noise"])
+
+    def allow(self, risk: int) -> None:
+        """Take a risk, in millionths, that noise leads a command further beside its end than is worked out here."""
+        self.risk, self.errors = risk, [0] * len(self.ways)
+        for k, (east, north) in enumerate(self.ways if risk else ()):
+            bits = (MILLION * k * (k + 1) // risk).bit_length()  # a chance of 2^-bits is less than this command's part
+            way = Fraction(isqrt(int(self.noise**2 * bits * LN_4 * MILLION**2)) + 1, MILLION)  # of a way of 1
+            self.errors[k] = int((isqrt(east**2 + north**2) + 1) * DIRECTION_SCALE * way * (1 + way / 5))
 
 
 def cut(interval: Span, number: int, unit: int) -> Span:
@@ -121,13 +132,13 @@ def led(interval: Span, by: int, error: int) -> Span:
     return interval[0] + min(by, 0) - error, interval[1] + max(by, 0) + error
 
 
-def touched(box: Zone, unit: int) -> list[Spot]:
+def touched(box: Sequence[Span], unit: int) -> list[Spot]:
     """Return the squares in whose inside a box has a part."""
     columns, rows = (range(low // unit, -(-high // unit)) for low, high in box)
     return list(product(columns, rows)) if len(columns) * len(rows) <= MAX_SQUARES else refuse("it leads too far")
 
 
-def sweep(box: Zone, vector: Span, unit: int) -> Spots:
+def sweep(box: Sequence[Span], vector: Span, unit: int) -> Spots:
     """Return the squares through whose inside a point leads that starts anywhere in a box."""
     dx, dy = vector
     lane, square = ([b * dx - a * dy for a, b in product(*sides)] for sides in (box, ((0, unit), (0, unit))))
@@ -179,6 +190,7 @@ class Course(NamedTuple):
     def ends(self, episode: Evidence, only: Spot | None = None) -> dict[Spot, "Course"]:
         """Return the case after the next command, for each square in which that may have ended, or for one."""
         unit, error, here, place = episode.unit, episode.unit // PLACE_PARTS, self.squares[-1], self.places[-1]
+        noise = episode.errors[self.step + 1]
         held = frozenset(square for square in self.held[-1] if self.at(square, self.step) is not False)
         word, found = episode.actions[self.step + 1]["do"], dict[Spot, list[Zone]]()
         is_led = word == ("push" if held else "move")
@@ -189,13 +201,14 @@ class Course(NamedTuple):
             if word == "grasp":
                 held = self.piece(episode, self.step, TOUCH_NAMES.index(episode.actions[self.step + 1]["direction"]))
             return {here: self.after(here, place, Spots(), Spots() if word == "release" else held, Spots())}
-        swept = sweep(place, vector, unit)
+        about = [led(side, 0, noise) for side in place]  # from here the vector leads over all squares that noise may
+        swept = sweep(about, vector, unit)
         barred = {square for square in swept if self.at(square, self.step) is not False}
-        ahead = list(product(*({0, (v > 0) - (v < 0)} for v in vector)))
-        boxes = [[led((p[0] + v, p[1] + v), 0, error) for p, v in zip(place, vector, strict=True)]]
+        ahead = list(product(*({0, (v > noise) - (v < noise), (v > -noise) - (v < -noise)} for v in vector)))
+        boxes = [[led((p[0] + v, p[1] + v), 0, error) for p, v in zip(about, vector, strict=True)]]
         for square in swept:  # a motion may have been stopped where it would have gone on in an occupied square
             if held or any((square[0] + a, square[1] + b) in barred for a, b in ahead):
-                ways = zip(place, vector, square, strict=True)
+                ways = zip(about, vector, square, strict=True)
                 boxes.append([led(cut(led(p, v, 0), k, unit), 0, 0 if v else error) for p, v, k in ways])
         for x, y in boxes:
             for square in touched((x, y), unit):

@@ -11,12 +11,15 @@ from utak.simulator.episode.output_files import is_episode, write_whole
 NO_CERTIFICATE = "no certificate: "  # begins the text that says why there is none
 
 
-def kept_texts(lines: Sequence[EpisodeLine], verdict: str | None) -> dict[str, str]:
-    """Return texts by the ends of their files' names: the episode (.jsonl) and its certificate (.json), or why none."""
+def kept_texts(lines: Sequence[EpisodeLine], verdict: str | None, risk: float) -> dict[str, str]:
+    """Return texts by the ends of their files' names: the episode (.jsonl) and its certificate (.json), or why none.
+
+    risk : of a certificate of a run with noise, percent.
+    """
     encoded = list(map(encode, lines))
     episode = {".jsonl": "".join(encoded)}
     try:
-        return episode | {".json": certificate_of(encoded, verdict)}
+        return episode | {".json": certificate_of(encoded, verdict, risk)}
     except NoCertificateError as why:
         return episode | {".txt": f"{NO_CERTIFICATE}{why}\n"}
 

@@ -28,6 +28,7 @@ from utak.simulator.certificates.checker import (
     goal_of,
 )
 from utak.simulator.certificates.courses import (
+    MILLION,
     SAMPLED_FIELDS,
     TOUCH_NAMES,
     VERGE_LETTER,
@@ -40,6 +41,7 @@ from utak.simulator.certificates.courses import (
     waking_case,
 )
 from utak.simulator.certificates.doors import door_shown
+from utak.simulator.scenario.settings import MAX_RISK, MIN_RISK, USUAL_RISK
 
 MAX_CASES = 20000  # that are tried; a bound on time
 StatedLine = list[Any]
@@ -88,16 +90,19 @@ def is_certificate(head: bytes) -> bool:
     return re.match(rb'\s*\{\s*"utak"\s*:\s*"certificate"', head) is not None
 
 
-def certificate_of(lines: Iterable[str], verdict: str | None) -> str:
+def certificate_of(lines: Iterable[str], verdict: str | None, risk: float = USUAL_RISK) -> str:
     """Return the certificate of the verdict of a run, as the text of its file, from the lines of its episode.
 
-    Raises NoCertificateError where none is found.
+    risk : percent, taken where there is noise. Raises NoCertificateError where none is found.
     """
+    if not MIN_RISK <= risk <= MAX_RISK:
+        raise ValueError(f"a risk is {MIN_RISK:g} to {MAX_RISK:g} percent, not {risk:g}")
     if verdict not in GOAL_KINDS:
         raise NoCertificateError(
             f"certificates show {' and '.join(GOAL_KINDS)}, and the verdict is {verdict or 'open'}"
         )
     episode = Evidence("".join(lines))
+    episode.allow(int(risk * MILLION / 100) if episode.noise else 0)
     try:
         return json.dumps(_certificate(episode, verdict), separators=(",", ":")) + "\n"
     except RefusedError as why:
@@ -112,7 +117,7 @@ def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
     tried = set[tuple[Any, ...]]()  # goals that may be impossible, and the squares of the things that they name
     for certificate in candidates:
         checker = CertificateCheck(episode, certificate)
-        if all(goal[:2] == ("near", OWN_NAME) for goal in checker.goals):
+        if not checker.has_cases:
             return certificate
         try:
             if claim == "impossible" or len(candidates) > 1 or any(goal[3] for goal in checker.goals):
@@ -213,8 +218,9 @@ def _meanings(episode: Evidence, claim: str, steps: list[int | None], goals: lis
             given += OF_DOORS
         if claim == "impossible" and len(goals) == 1:
             given += OF_WALLS + (OF_THINGS if means else [])
+        risk = episode.risk if any(goal[:2] != ("near", OWN_NAME) for goal in goals) else 0
         head = {"utak": "certificate", "version": 1, "claim": claim, "goals": episode.goals}
-        yield head | {"steps": steps, "meaning": means, "given": given, "cases": []}
+        yield head | {"steps": steps, "meaning": means, "given": given, "risk": risk, "cases": []}
 
 
 def _touches(episode: Evidence, name: str, which: str) -> list[StatedLine]:

@@ -8,7 +8,15 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from utak.simulator.scenario.settings import MAX_NOISE, MAX_SEED, MAX_STEPS, PATH_CHOICES
+from utak.simulator.scenario.settings import (
+    MAX_NOISE,
+    MAX_RISK,
+    MAX_SEED,
+    MAX_STEPS,
+    MIN_RISK,
+    PATH_CHOICES,
+    USUAL_RISK,
+)
 from utak.simulator.terminal.numbers import decimal, point, whole
 
 MAX_LIMIT_ROWS = 1_000_000  # the greatest --limit, in rows; a convention
@@ -112,6 +120,13 @@ STORY = value("story", "SCENARIO|EP.jsonl", "a scenario folder, which is run, or
 UNTRUSTED = flag("--untrusted", "refuse links that lead out of a scenario's folder")
 RUN_SECONDS = decimal(MIN_SECONDS, MAX_SECONDS)
 ORIGINS = ("bottom", "top")
+RISK = value(
+    "--risk",
+    "PERCENT",
+    f"how likely a certificate may be wrong by noise, at most (default {USUAL_RISK:g})",
+    decimal(MIN_RISK, MAX_RISK),
+    default=USUAL_RISK,
+)
 ROBOT_OPTIONS = (
     value("--paths", None, "how routes are found (default skeleton)", choices=PATH_CHOICES),
     flag("--no-pull", "push what is held, never pull", dest="pull", action="store_false", default=None),
@@ -148,6 +163,7 @@ RUN = (
     at("the last step of --from that is repeated"),
     value("--from-kb", "FILE", "a file of rules of the repeated run; repeatable", action="append", default=[]),
     value("--certificate", "FILE", "write why the verdict follows, for `utak verify`, where that can be shown"),
+    RISK,
     value("--dump-asp", "DIR", DUMP),
     flag("--force", "let --log, --html, --certificate overwrite files of other kinds, and --dump-asp fill a folder"),
     flag("--json", "print the result as one JSON object"),
@@ -169,6 +185,7 @@ TEST = (
     value("--csv", "FILE", "write the points of all scenarios to this file as a table"),
     flag("--times", "say in --json and --junit how long each scenario took"),
     CERTIFICATES,
+    RISK,
     flag("--force", "let --junit, --csv and --certificate overwrite files of other kinds"),
 )
 SWEEP = (
@@ -190,6 +207,7 @@ SWEEP = (
     *ROBOT_OPTIONS,
     value("--svg", "FILE", "draw success rates and numbers of commands"),
     CERTIFICATES,
+    RISK,
     flag("--json", "print the summary as one JSON object"),
 )
 CHECK = (

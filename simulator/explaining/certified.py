@@ -35,7 +35,8 @@ def certificate_reason(
     except (RefusedError, ValueError, RecursionError) as why:
         return Reason("the certificate is refused", str(why), ReasonKind.MEASURED, "certificate")
     stated = json.loads(text)
-    below = [*_granted(stated["given"]), *_meaning(stated["meaning"], steps), *_orientations(stated["cases"], steps)]
+    below = [*_granted(stated["given"]), *_chanced(stated["risk"]), *_meaning(stated["meaning"], steps)]
+    below += _orientations(stated["cases"], steps)
     if stated["cases"]:
         commands = tuple(command_reason(step) for step in steps[1:])
         below.append(
@@ -50,6 +51,14 @@ def _granted(given: Sequence[str]) -> Iterator[Reason]:
     for claim in given:
         kind = ReasonKind.CONVENTION if claim in GRANTED else ReasonKind.TASK
         yield Reason(claim, f"taken for granted: {GRANTED.get(claim, 'the task says so')}", kind, "certificate")
+
+
+def _chanced(risk: int) -> Iterator[Reason]:
+    """Yield what is left to chance. risk : in millionths."""
+    if risk:
+        because = f"it does in at most {risk / 10**4:g} of 100 runs, as motions are disturbed (docs/certificates.md)"
+        claim = "noise led no command further beside its end than is worked out"
+        yield Reason(claim, because, ReasonKind.CONVENTION, "certificate")
 
 
 def _meaning(meaning: Any, steps: Sequence[RecordedStep]) -> Iterator[Reason]:

@@ -6,6 +6,7 @@ from typing import Any
 SETTING_NAMES = ("seed", "noise", "paths", "max_steps", "pull")  # as episodes and command lines name the options
 MAX_SEED, MAX_NOISE, MAX_STEPS = 2**63 - 1, 1.0, 1_000_000  # the greatest values of options; conventions
 PATH_CHOICES = ("skeleton", "visibility", "grid")  # the path-finders, as `--paths` and episodes name them
+MIN_RISK, USUAL_RISK, MAX_RISK = 0.0001, 1.0, 99.0  # percent, of certificates of runs with noise; conventions
 
 
 @dataclass(frozen=True)

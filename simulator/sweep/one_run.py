@@ -41,7 +41,7 @@ def run_one(argument: dict[str, Any], make: RobotMaker = make_robot) -> dict[str
     expected, passed = scenario.expectations, None
     if expected is not None:
         passed = not list(faults_of(result, result.outcomes, expects_verdict(expected)))
-    texts = {"kept": kept_texts(lines, result.verdict)} if argument["certificates"] else {}
+    texts = {"kept": kept_texts(lines, result.verdict, argument["risk"])} if argument["certificates"] else {}
     return {"result": {**result.line["result"], "unmet": list(result.unmet)}, "passed": passed, **texts}
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import islice
 from typing import Any, NamedTuple
 
-from utak.simulator.scenario.settings import MAX_SEED, Settings
+from utak.simulator.scenario.settings import MAX_SEED, USUAL_RISK, Settings
 from utak.simulator.sweep.contents import ScenarioContents
 from utak.simulator.sweep.executors.code_identity import code_identity
 from utak.simulator.sweep.executors.tasks import WorkerTask
@@ -39,6 +39,7 @@ class SweepPlan:
     rules: tuple[tuple[str, str], ...] = ()  # (name, text) of each file of users' rules
     seconds: float | None = None  # the limit of wall-clock time of a run; None for no limit
     certificates: str | None = None  # the folder in which episodes and certificates are kept; None to keep none
+    risk: float = USUAL_RISK  # of certificates of runs with noise, percent
     shard: tuple[int, int] = (1, 1)  # (i, n): only every n-th run, from the i-th on
 
     @property
@@ -66,6 +67,7 @@ class SweepPlan:
             "rules": [list(file) for file in self.rules],
             "options": self.settings.options | {"noise": run.noise, "seed": run.seed},
             "certificates": self.certificates is not None,
+            "risk": self.risk,
         }
         return WorkerTask(RUN_FUNCTION, argument, self.seconds)
 

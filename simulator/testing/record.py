@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from utak.simulator.certificates.keeping import keep, kept_texts
 from utak.simulator.episode.episode import EpisodeLine
 from utak.simulator.run.trial import ScenarioTrial, promised_points, run_trial
+from utak.simulator.scenario.settings import USUAL_RISK
 from utak.simulator.scenario.untrusted import refuse_outside_links
 from utak.simulator.terminal import exits
 from utak.simulator.terminal.action_in_words import describe
@@ -35,6 +36,7 @@ class Wish(NamedTuple):
     untrusted: bool = False  # whether links that lead out of the scenario are refused
     timed: bool = False  # whether the record says how long it took
     kept: tuple[str, str] | None = None  # the folder and the name under which the episode and its certificate are kept
+    risk: float = USUAL_RISK  # of that certificate, with noise, percent
     force: bool = False  # whether files of other kinds are overwritten there
 
 
@@ -56,7 +58,7 @@ def _run(wish: Wish, trials: list[ScenarioTrial]) -> int:
     listeners = [] if wish.kept is None else [lines.append]
     trials.append(run_trial(Path(wish.folder), wish.given, wish.kb_files, listeners=listeners))
     if wish.kept is not None:
-        keep(*wish.kept, kept_texts(lines, trials[0].result.verdict), wish.force)
+        keep(*wish.kept, kept_texts(lines, trials[0].result.verdict, wish.risk), wish.force)
     return exits.SUCCESS if trials[0].passed else exits.NOT_REACHED
 
 

@@ -68,7 +68,7 @@ def execute(options: argparse.Namespace) -> int:
 def _certificate_written(options: argparse.Namespace, result: Result, lines: Sequence[EpisodeLine]) -> str:
     """Write the certificate of the verdict and return its text; where there is none, say why and return ""."""
     try:
-        text = certificate_of(map(encode, lines), result.verdict)
+        text = certificate_of(map(encode, lines), result.verdict, options.risk)
     except NoCertificateError as why:
         print(one_line(f"no certificate: {why}"), file=sys.stderr)
         return ""

@@ -89,6 +89,7 @@ def _plan(options: argparse.Namespace) -> tuple[SweepPlan, bool]:
         tuple(rules),
         options.seconds,
         options.certificate,
+        options.risk,
         options.shard,
     )
     return plan, carrying

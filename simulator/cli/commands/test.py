@@ -32,7 +32,7 @@ def execute(options: argparse.Namespace) -> int:
         make_folder(options.certificate)
         kept = [(options.certificate, name) for name in names_of([folder.resolve() for folder in found])]
     wishes = [
-        Wish(str(folder), root, given, kb_files, untrusted, timed, where, options.force)
+        Wish(str(folder), root, given, kb_files, untrusted, timed, where, options.risk, options.force)
         for (folder, root), where in zip(found.items(), kept, strict=True)
     ]
     records = []

@@ -174,15 +174,32 @@ const checkCertificate = (() => {
   // Why cases say nothing of an episode; null where they do.
   function foreign({ header, steps }) {
     const { options } = header;
-    if (decimal(options.noise)[0] !== 0n) return "the run is noisy";
     if ("forked" in header || "changes" in header || !same(options.kb, [])) return "the run was forked, changed or had rules of its own";
     return steps.some((line) => "disturbed" in line) ? "others moved things" : null;
+  }
+
+  // ---- noise
+
+  const MILLION = 10n ** 6n;
+  // The least whole number with at least this square.
+  function root(square) {
+    let found = 1n;
+    while (found * found < square) found *= 2n;
+    for (let step = found / 2n; step > 0n; step /= 2n) if ((found - step) ** 2n >= square) found -= step;
+    return found;
+  }
+  // How far noise leads a command of step k, and of a length, beside its end, but for its part of a risk; rounded up.
+  function astray([digits, places], k, risk, length) {
+    const bits = BigInt(((MILLION * BigInt(k * (k + 1))) / risk).toString(2).length), tens = 10n ** BigInt(2 * places);
+    const part = root((digits * digits * bits * 13863n * MILLION * 100n + tens - 1n) / tens); // in millionths
+    return (length * part * (5n * MILLION + part)) / (5n * MILLION * MILLION) + 1n;
   }
 
   // ---- cases
 
   class World {
-    constructor(episode) {
+    // noise: of the run, as a decimal; risk: in millionths, 0 without noise.
+    constructor(episode, noise, risk) {
       this.steps = episode.steps;
       const leads = (action) => action && (action.do === "move" || action.do === "push");
       const vectors = episode.steps.map(({ action }) => (leads(action) ? [decimal(action.east), decimal(action.north)] : [[0n, 0], [0n, 0]]));
@@ -190,6 +207,7 @@ const checkCertificate = (() => {
       this.vectors = vectors.map((vector) => vector.map(([digits, count]) => digits * 10n ** BigInt(places - count)));
       this.unit = ONE * 10n ** BigInt(places);
       this.tiny = this.unit / 10n ** 6n;
+      this.astray = this.vectors.map(([e, n], k) => (risk && (e || n) ? astray(noise, k, BigInt(risk), root((e * e + n * n) * ONE * ONE)) : 0n));
     }
     side(number) { return [BigInt(number) * this.unit, BigInt(number + 1) * this.unit]; }
     box(square) { return both((a) => this.side(square[a])); }
@@ -264,8 +282,8 @@ const checkCertificate = (() => {
         const taken = action.do === "grasp" ? this.piece(one, [k - 1, DIRECTIONS.indexOf(action.direction)]) : action.do === "release" ? [] : held;
         return new Map([[keyOf(square), after(square, place, [], taken)]]);
       }
-      const lines = both((a) => hull(place[a], moved(place[a], v[a])));
-      const across = ([x, y]) => plus(times(x, -v[1]), times(y, v[0])), [low, high] = across(place); // how far to the side of v
+      const noise = this.astray[k], about = both((a) => grown(place[a], noise)), lines = both((a) => hull(about[a], moved(about[a], v[a])));
+      const across = ([x, y]) => plus(times(x, -v[1]), times(y, v[0])), [low, high] = across(about); // how far to the side of v
       const swept = squaresUnder(lines, unit).filter((one) => {
         const [right, left] = across(this.box(one));
         return right < high && left > low;
@@ -278,8 +296,8 @@ const checkCertificate = (() => {
           ends.set(keyOf(end), { end, box: known ? both((a) => hull(known.box[a], box[a])) : box });
         }
       };
-      ended(both((a) => grown(moved(place[a], v[a]), tiny)));
-      const ahead = both((a) => (v[a] > 0n ? [0, 1] : v[a] < 0n ? [0, -1] : [0]));
+      ended(both((a) => grown(moved(about[a], v[a]), tiny)));
+      const ahead = both((a) => [0, ...(v[a] > -noise ? [1] : []), ...(v[a] < noise ? [-1] : [])]);
       for (const other of swept) {
         if (!held.length && !ahead[0].some((i) => ahead[1].some((j) => barred.has(keyOf(from(other, [i, j])))))) continue;
         ended(both((a) => grown(cut(this.side(other[a]), lines[a]), v[a] === 0n ? tiny : 0n)));
@@ -453,7 +471,8 @@ const checkCertificate = (() => {
       const reach = ([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n)), square = one.squares[step], limit = reach(square);
       const held = new Set(one.held[step].map(keyOf)), ahead = [from(square, [u > 0n ? 1 : -1, 0]), from(square, [0, v > 0n ? 1 : -1])];
       if (!this.wasFree(one, square) || !ahead.every((other) => this.at(one, other, step) && !held.has(keyOf(other)))) return false;
-      return one.squares.slice(0, step + 1).every((passed, k) => reach(passed) <= limit && turned(one.degrees).fields.every((samples, f) => {
+      const isWall = (other) => !one.changes.has(keyOf(other)) && this.at(one, other, 0);
+      return one.squares.slice(0, step + 1).every((passed, k) => (reach(passed) <= limit || isWall(passed)) && turned(one.degrees).fields.every((samples, f) => {
         if (f === OWN) return true;
         const further = samples.filter((sample) => sample !== null && reach(from(passed, sample)) > limit).length;
         return further <= countsOf(this.steps[k].retina[f], samples.length)[1];
@@ -677,12 +696,12 @@ const checkCertificate = (() => {
     return shown;
   }
 
-  const KEYS = ["cases", "claim", "given", "goals", "meaning", "steps", "utak", "version"];
+  const KEYS = ["cases", "claim", "given", "goals", "meaning", "risk", "steps", "utak", "version"];
 
   function checked(episodeText, certificateText) {
     const certificate = parsed(certificateText), episode = readEpisode(episodeText), { task } = episode.header;
     need(isObject(certificate) && same(Object.keys(certificate).sort(), KEYS), "these are not the keys of a certificate");
-    const { claim, given, cases, meaning } = certificate;
+    const { claim, given, cases, meaning, risk } = certificate;
     need(certificate.utak === "certificate" && certificate.version === 1, "this is no certificate of version 1");
     need(claim === "done" || claim === "impossible", "done and impossible can be claimed");
     need(Array.isArray(certificate.goals) && same(certificate.goals, task.goals), "the goals are not those of the episode");
@@ -691,9 +710,11 @@ const checkCertificate = (() => {
     need(same(along ? given.slice(0, -1) : given, wanted.given), "what is taken for granted is not what the task says");
     const simple = wanted.shown.every(({ kind }) => kind === "felt");
     need(Array.isArray(cases) && (cases.length === 0) === simple, simple ? "touches show these goals, and no cases" : "cases are missing");
+    const noise = decimal(episode.header.options.noise), isRisky = !simple && noise[0] !== 0n;
+    need(Number.isInteger(risk) && (isRisky ? risk > 0 && risk < 1e6 : risk === 0), isRisky ? "with noise there is a risk, in millionths" : "there is no risk to be taken");
     let shown = [];
     if (!simple) {
-      const why = foreign(episode), steps = claim === "done" ? episode.steps : episode.steps.slice(0, wanted.shown[0].step + 1), world = new World({ steps });
+      const why = foreign(episode), steps = claim === "done" ? episode.steps : episode.steps.slice(0, wanted.shown[0].step + 1), world = new World({ steps }, noise, risk);
       need(why === null, why);
       const hasDoor = wanted.shown.some(({ kind }) => kind === "room");
       const isDone = (one, door) => (door.length > 0) === hasDoor && wanted.shown.every((goal) => shows(world, one, goal, meaning, door));
@@ -701,7 +722,7 @@ const checkCertificate = (() => {
       shown = readCases(cases, world, along ? 1 : 90, claim === "done" ? isDone : isBarred);
     }
     const touches = Object.entries(meaning).map(([name, touch]) => ({ name, touch, offset: TOUCHES[touch[1]] }));
-    return { accepted: true, says: `${claim}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
+    return { accepted: true, says: `${claim}${risk ? `, at a risk of ${risk / 1e4} percent` : ""}: ${wanted.shown.map(({ text }) => text).join(", ")}` + (given.length ? `, given ${given.join(", ")}` : ""), shown, touches };
   }
 
   // Returns { accepted, says: what is shown, or why it is refused; shown: the cases that show it, as `drawn` has them; touches:

@@ -36,17 +36,22 @@ Change = Callable[[dict[str, Any]], None]
 
 
 def walk(
-    tmp_path: Path, room: str, commands: Sequence[Command], *goals: str, claims: Sequence[str] = ()
+    tmp_path: Path,
+    room: str,
+    commands: Sequence[Command],
+    *goals: str,
+    claims: Sequence[str] = (),
+    noise: tuple[float, int] = (0.0, 0),
 ) -> RecordedWalk:
     path = tmp_path / "world.txt"
     path.write_text(room.strip() + "\n")
-    return recorded_walk(read_picture(path), commands, goals, claims, ("x", "y"))
+    return recorded_walk(read_picture(path), commands, goals, claims, ("x", "y"), noise=noise)
 
 
 def certificate(walk: RecordedWalk, cases: list[Any], **more: Any) -> dict[str, Any]:
     steps = [len(walk.places) - 1] * len(walk.goals)
     head = {"utak": "certificate", "version": 1, "claim": "done", "goals": list(walk.goals)}
-    return {**head, "steps": steps, "meaning": {}, "given": [], "cases": cases, **more}
+    return {**head, "steps": steps, "meaning": {}, "given": [], "risk": 0, "cases": cases, **more}
 
 
 def shown(walk: RecordedWalk, stated: dict[str, Any]) -> str:
@@ -81,6 +86,13 @@ def test_the_cases_along_the_grid_show_a_corner(tmp_path: Path) -> None:
     assert shown(found, stated) == "done: at(utak,corner(northeast)) at step 1; given along(grid)"
 
 
+def test_a_square_of_the_wall_in_which_the_robot_was_stopped_is_no_floor(tmp_path: Path) -> None:
+    way = [Move(1.0, 0.0), Move(0.0, 3.0), Move(0.0, -0.3)]
+    found = walk(tmp_path, ROOM.replace(".U", "U."), way, "at(utak,corner(northeast))")
+    assert found.places[2][1] == 6.0  # its square is the one beyond
+    assert shown(found, json.loads(found_certificate(found))).startswith("done: at(utak,corner(northeast)) at step 3")
+
+
 def without(cases: list[Any], word: str) -> None:
     """Take all lines of a kind away."""
     cases[:] = [line for line in cases if line[0] != word]
@@ -99,6 +111,8 @@ WRONG_CHANGES: list[tuple[Change, str]] = [
     (lambda c: c.update(steps=[None]), "does not have"),
     (lambda c: c.update(steps=[0]), "does not hold at the end"),
     (lambda c: c.update(more=1), "no others"),
+    (lambda c: c.pop("risk"), "no others"),
+    (lambda c: c.update(risk=1), "its risk must be"),  # nothing is left to chance
     (lambda c: c["cases"].insert(1, ["trust", "me"]), "no line that may stand here"),
     (lambda c: c["cases"].insert(1, ["holds"]), "no line that may stand here"),
     (lambda c: c["cases"].insert(1, ["count", [1, 0, 1]]), "no field of an impression so far"),
@@ -223,13 +237,15 @@ def test_what_leans_on_a_wall_may_be_larger_than_the_checker_looks(tmp_path: Pat
         found_certificate(found)
 
 
-@pytest.mark.parametrize(("key", "value"), [("forked", []), ("options", {"noise": 0.1, "kb": []})])
+@pytest.mark.parametrize(("key", "value"), [("forked", []), ("options", {"noise": 0.0, "kb": ["rules.lp"]})])
 def test_in_other_circumstances_nothing_is_said_of_places(tmp_path: Path, key: str, value: Any) -> None:
     found = walk(tmp_path, ROOM, [], "at(utak,start)")
     head, *rows = found.text.splitlines(keepends=True)
     text = json.dumps(json.loads(head) | {key: value}) + "\n" + "".join(rows)
     with pytest.raises(RefusedError, match="nothing is said of where the robot is"):
         verify(text, json.dumps(certificate(found, [["angle", 0], ["holds"]], given=["along(grid)"])))
+    with pytest.raises(NoCertificateError, match="nothing is said of where the robot is"):
+        certificate_of(text.splitlines(keepends=True), "done")
 
 
 CLOSED = "bbbbbbbb\nb......b\nb......b\nb..kk..b\nb......b\nb.U....b\nbbbbbbbb"
