@@ -283,7 +283,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (TIME_ARGUMENT,) for name in ("time", "begins", "busy", "acts", "settling")},
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
-        **{(name, 0): () for name in ("any_way", "shaken")},
+        **{(name, 0): () for name in ("any_way", "shaken", "untouched")},
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
@@ -356,7 +356,8 @@ PLAN_FACTS = frozenset(
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
-        "default_price", "acts", "waits", "infeasible", "narrow", "holds", "left", "shaken", "settling", "settled",
+        "default_price", "acts", "waits", "infeasible", "narrow", "untouched", "holds", "left", "shaken", "settling",
+        "settled",
     ]
 )  # fmt: skip
 # Predicates of the choice among activities. Rules forbid activities, and price them.

@@ -170,7 +170,7 @@ class Transporter:
                 return f"{unseen.missing}, and what things are is said by the rule at {stating}"
             return unseen.missing + (f", by the rule at {denying}" if denying else "")
 
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, missing, proof))
+        decision = turn.seek(subgoals, missing, proof)
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
@@ -214,7 +214,7 @@ class Transporter:
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
         along = partial(_take_along, node, turn, fetch=fetch)
         brought = None if land.there or again or stays else along
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, refused.proof(), brought))
+        decision = turn.seek(subgoals, refused.reason, refused.proof(), brought)
         self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
