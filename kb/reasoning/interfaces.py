@@ -352,12 +352,11 @@ ASKED_ENCODINGS = frozenset({"alternatives"})
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "relief", "size", "begins", "done", "lay", "any_way",
+        "connects", "relief", "size", "begins", "done", "lay", "any_way", "untouched",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
-        "default_price", "acts", "waits", "infeasible", "narrow", "untouched", "holds", "left", "shaken", "settling",
-        "settled",
+        "default_price", "acts", "waits", "infeasible", "narrow", "holds", "left", "shaken", "settling", "settled",
     ]
 )  # fmt: skip
 # Predicates of the choice among activities. Rules forbid activities, and price them.

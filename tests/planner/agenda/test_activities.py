@@ -47,7 +47,6 @@ def test_what_may_stand_against_a_wall_is_touched_by_a_step_of_the_plan(
     assert steps == [f"planned({step}(robot))" for step in planned]
 
 
-
 def test_before_a_verdict_walls_are_felt_and_the_record_says_what_was_refused_before(tmp_path: Path) -> None:
     decision, choice = decided(tmp_path)
     assert "felt" in decision.why and decision.command is not None
