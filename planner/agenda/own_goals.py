@@ -175,7 +175,9 @@ class OwnGoals:
         proof = proof_if_not_found(situation.model) if unseen else (missing, NOTHING_LEFT)
 
         decision = turn.seek(subgoals, lambda: missing, proof)
-        if decision.command is None and _is_shut_off(situation):
+        is_shut_off = decision.command is None and bool(situation.shut(ROBOT))
+        opened = situation.through_shut_doors() if is_shut_off else situation
+        if (opened.cost_maps.floor & ~situation.cost_maps.floor).any():
             unknown = unknown_destination("every way that is known leads through a forbidden door")
             others = subgoals_towards([unknown], situation, reconciled, TO_REACH)
             decision = turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT) if proof else ())
@@ -225,13 +227,6 @@ class OwnGoals:
         move = next_move(cost_maps, route.squares, route.level, kind, off_centre=False)
         steps = towards(kind, end_of(route, model), model)
         return Decision(move, f"the way round {name}; {stage}", steps=steps, question=question)
-
-
-def _is_shut_off(situation: Situation) -> bool:
-    """Return whether the robot would reach more floor through doors that are shut for it."""
-    if not situation.shut(ROBOT):
-        return False
-    return bool((situation.through_shut_doors().cost_maps.floor & ~situation.cost_maps.floor).any())
 
 
 def _turned(start: XY, end: XY, node: Node) -> float:
