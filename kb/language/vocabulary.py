@@ -219,6 +219,7 @@ PLAN_SUBJECT_ARGUMENT = ArgumentType("what a step settles", NAME_ARGUMENT.check)
 SETTLING_STEPS = {  # with what each does, in words; {} is what it settles
     "find": "what {} is about is looked for",
     "pursue": "the robot sees how {} can hold",
+    "touch": "what may stand against a wall, or be a part of it, is touched, for {}",
     "recheck": "the passage that is too narrow is looked at again from close by, for {}",
     "measure": "the object is pushed by parts of a square to know its size, for {}",
     "probe": "the object is pushed where the passage may be wide enough, for {}",

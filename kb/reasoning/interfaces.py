@@ -274,7 +274,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (TIME_ARGUMENT,) for name in ("time", "begins", "busy", "acts", "settling")},
         ("done", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("lay", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
-        **{(name, 0): () for name in ("any_way", "shaken")},
+        **{(name, 0): () for name in ("any_way", "shaken", "untouched")},
         ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
@@ -357,7 +357,7 @@ ASKED_ENCODINGS = frozenset({"alternatives"})
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "relief", "size", "begins", "done", "lay", "any_way",
+        "connects", "relief", "size", "begins", "done", "lay", "any_way", "untouched",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",

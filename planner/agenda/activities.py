@@ -20,8 +20,9 @@ from utak.planner.carrying.remaining_plan import RemainingPlan
 from utak.planner.constraints import avoidances
 from utak.planner.deciding.clearing import ObstacleClearer
 from utak.planner.deciding.errands import ErrandRunner
-from utak.planner.deciding.feeling import feeling_scope
+from utak.planner.deciding.feeling import feeling_scope, touch_contacts
 from utak.planner.deciding.keeping import ConstraintKeeper
+from utak.planner.deciding.search import contact_subgoals
 from utak.planner.deciding.stage_turn import ALL_OBJECTS, CONSTRAINTS, ROBOT_ITSELF, StageTurn
 from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.trials import Trials
@@ -59,6 +60,7 @@ class Activities:
         self._settling: Mapping[str, Callable[[Sequence[Fact], StageTurn], Decision]] = {
             "find": self._towards_first,
             "pursue": self._towards_first,
+            "touch": touch_contacts,
             "recheck": checks.recheck,
             "measure": checks.measure,
             "probe": checks.probe,
@@ -147,7 +149,8 @@ class Activities:
 
     def _open(self, turn: StageTurn, agenda: Agenda) -> list[str]:
         """Return what is open, as facts for the task plan."""
-        return [*_unknown(turn), *agenda.results, *self._transporter.checks.facts(turn)]
+        untouched = ["untouched"] * bool(contact_subgoals(turn.situation))
+        return [*_unknown(turn), *agenda.results, *untouched, *self._transporter.checks.facts(turn)]
 
     @property
     def stated(self) -> TaskPlan:

@@ -174,19 +174,13 @@ class OwnGoals:
         unseen = any(str(term) in reconciled.hypothesised for goal in goals for term in goal.args[1:])
         proof = proof_if_not_found(situation.model) if unseen else (missing, NOTHING_LEFT)
 
-        def ask() -> Decision:
-            """Return the next command there, or to look for another way where doors are shut; else the verdict."""
-            found = turn.seek(subgoals, lambda: missing, proof)
-            if found.command is not None or not situation.shut(ROBOT):
-                return found
-            beyond = situation.through_shut_doors().cost_maps.floor & ~situation.cost_maps.floor
-            if not beyond.any():
-                return found
+        decision = turn.seek(subgoals, lambda: missing, proof)
+        is_shut_off = decision.command is None and bool(situation.shut(ROBOT))
+        opened = situation.through_shut_doors() if is_shut_off else situation
+        if (opened.cost_maps.floor & ~situation.cost_maps.floor).any():
             unknown = unknown_destination("every way that is known leads through a forbidden door")
             others = subgoals_towards([unknown], situation, reconciled, TO_REACH)
-            return turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT) if proof else ())
-
-        decision = turn.feel_before_verdict(ask)
+            decision = turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT) if proof else ())
         if decision.verdict == TaskVerdict.IMPOSSIBLE and is_apart_from_start(goals, woke, situation):
             return replace(decision, unless=None)
         return halt_beside_walls(decision, stage, situation)

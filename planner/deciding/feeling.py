@@ -11,9 +11,11 @@ import numpy as np
 from utak.geometry.kernels.arrays import Bools
 from utak.geometry.raster.components import components
 from utak.kb.language.goal_words import ROBOT, TRACK_GOALS
+from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node
 from utak.kb.world.rooms import Door
 from utak.planner.advice import Go
+from utak.planner.deciding.search import contact_subgoals
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
 from utak.planner.navigation.subgoals import Subgoal
@@ -132,6 +134,11 @@ def _offered(places: Sequence[FeelingPlace], order: Sequence[int]) -> set[int]:
         full = [n for n in of_kind if places[n].doorways[kind] == max(places[m].doorways[kind] for m in of_kind)]
         offered.update(of_kind[:MAX_HALTS_OF_KIND], full[:MAX_HALTS_OF_KIND])
     return offered
+
+
+def touch_contacts(_goals: Sequence[Fact], turn: StageTurn) -> Decision:
+    """Return the next command to touch what may be an object against a wall, or part of one; nothing for none."""
+    return turn.look_if_reached(contact_subgoals(turn.situation))
 
 
 class Passages:

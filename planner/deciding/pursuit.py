@@ -15,7 +15,6 @@ from utak.geometry.raster.geodesic import GEODESIC_UNREACHED
 from utak.kb.body import Command, Release
 from utak.kb.language.goal_words import ROBOT
 from utak.kb.world.model import WorldModel
-from utak.planner.deciding.search import contact_subgoals
 from utak.planner.decision import Decision, TaskVerdict, impossible
 from utak.planner.goals.bounds import telling_squares
 from utak.planner.navigation.fewest_moves import MOVE_COST, FewestMoves
@@ -59,8 +58,6 @@ class Pursuer:
         self._paths = paths
         self._kept = StickyRoute()
         self._circles = LoopGuard()
-        self.contacts: Callable[[Situation], Sequence[Subgoal]] = contact_subgoals
-        self._feeling = False  # whether the robot is about to feel what may stand against a wall
 
     def closes_loop(self, model: WorldModel, command: Command) -> bool:
         """Record a command that is about to be given, and return whether it was given before in the same state."""
@@ -114,16 +111,6 @@ class Pursuer:
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
             self._circles.tire(to_map_squares(subgoal.squares, model))
-
-    def feel_before_verdict(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
-        """Return what is decided; before a verdict, feel what may be an object against a wall, or part of a wall."""
-        decision = None if self._feeling else ask()
-        if decision is not None and not decision.verdict:
-            return decision
-        subgoals = self.contacts(situation)
-        felt = self.pursue(subgoals, stage, situation, str) if subgoals else None
-        self._feeling = felt is not None and not felt.verdict
-        return felt if felt is not None and self._feeling else decision or ask()
 
     def _walk(
         self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None

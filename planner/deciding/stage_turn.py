@@ -133,7 +133,3 @@ class StageTurn:
         if isinstance(advice, See):
             return command_or_nothing(self.see(advice))
         return nothing_to_do("no place to go to, and nothing to look at first, is known")
-
-    def feel_before_verdict(self, ask: Callable[[], Decision]) -> Decision:
-        """Return what is decided; what may be an object is felt before a verdict: see Pursuer.feel_before_verdict."""
-        return self.pursuer.feel_before_verdict(ask, self.stage, self.situation)

@@ -160,7 +160,7 @@ class Transporter:
                 return f"{unseen.missing}, and what things are is said by the rule at {stating}"
             return unseen.missing + (f", by the rule at {denying}" if denying else "")
 
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, missing, proof))
+        decision = turn.seek(subgoals, missing, proof)
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
@@ -211,7 +211,7 @@ class Transporter:
             "taken_before": land.shut_in and self._has_taken_along,
         }
         along = partial(_take_along, node, [f"{fact}({node.name})" for fact, is_so in given.items() if is_so], turn)
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, refused.proof(), along))
+        decision = turn.seek(subgoals, refused.reason, refused.proof(), along)
         self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"

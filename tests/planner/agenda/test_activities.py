@@ -1,5 +1,6 @@
 """The agenda: activities are chosen by rules that users can extend, and the record says what was refused before."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -14,18 +15,36 @@ from utak.planner.agenda.decider import Decider
 from utak.planner.decision import Decision
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
+JUTTING = ["bbbbbbb", "b.....b", "b.....b", "bbb...b", "b..U..b", "bbbbbbb"]  # a wall, or something against it
 NEXT_ROOM = Task({}, (), facts_from_text("in(utak, room(next))."))
 
 
-def decided(tmp_path: Path, rules: str = "") -> tuple[Decision, SolverCall]:
+def decided(tmp_path: Path, rules: str = "", room: Sequence[str] = ROOM) -> tuple[Decision, SolverCall]:
     """Return what a robot in a closed room decides, and the record of the agenda. rules : of the user."""
     file = tmp_path / "mine.lp"
     file.write_text(rules)
-    model = known_model(ROOM)
+    model = known_model(room)
     with record_decisions() as record:
         decision = Decider(NEXT_ROOM, rules=(file,) if rules else ()).decide(model, [model.place])
     (choice,) = [call for call in record if call.encoding == "deciding"]
     return decision, choice
+
+
+@pytest.mark.parametrize(
+    ("rules", "planned"),
+    [
+        ("", ["touch"]),
+        ("price(touch(S), 7) :- stuck(S, _).", ["make_way", "touch"]),
+        (":- occurs(touch(_), _).", ["make_way", "try", "feel"]),
+    ],
+)
+def test_what_may_stand_against_a_wall_is_touched_by_a_step_of_the_plan(
+    rules: str, planned: list[str], tmp_path: Path
+) -> None:
+    decision, choice = decided(tmp_path, rules, JUTTING)
+    assert decision.command is not None and ("stands against the wall" in decision.why) == ("touch" in planned)
+    steps = [fact for fact in choice.facts if fact.startswith("planned(")]
+    assert steps == [f"planned({step}(robot))" for step in planned]
 
 
 def test_before_a_verdict_walls_are_felt_and_the_record_says_what_was_refused_before(tmp_path: Path) -> None:

@@ -227,7 +227,6 @@ def at_a_loss(situation: Situation) -> Decision:
     """Return what is decided with a held object, no way for it known, and nothing left to look at or feel."""
     unproved = replace(situation, model=replace(situation.model, shaken=True))
     tools = tools_with()
-    tools.pursuer.contacts = lambda _: []
     return exploring(unproved, at(situation), viewpoints=False, tools=tools)
 
 
