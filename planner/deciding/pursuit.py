@@ -32,7 +32,6 @@ from utak.planner.navigation.walks import (
     find_walks,
     walks_along,
 )
-from utak.planner.question import Question
 from utak.planner.screen.moves import CARRYING_PACE, WALKING_PACE, next_move
 from utak.planner.screen.projection import SquareIndices
 from utak.planner.sights.frontiers import VIEW_SPACING
@@ -70,7 +69,7 @@ class Pursuer:
         situation: Situation,
         missing: Callable[[], str],
         proof: Sequence[str] = (),
-        along: Callable[[Subgoal, Question], Decision] | None = None,
+        along: Callable[[Subgoal], Decision] | None = None,
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict when none can be reached."""
         model = situation.model
@@ -95,7 +94,7 @@ class Pursuer:
                     missed, proof = f"{missed}, and {' and '.join(dict.fromkeys(whys))}", ()
                 return _given_up(stage, missed, proof, in_circles=circled)
             subgoal, question = chosen
-            if along is not None and (taken := along(subgoal, question)):
+            if along is not None and (taken := along(subgoal)):
                 return taken
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")

@@ -15,7 +15,7 @@ from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
 from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
 from utak.planner.navigation.subgoals import Subgoal
-from utak.planner.question import Question, argument
+from utak.planner.question import argument
 from utak.planner.screen.moves import halt_exactly_at
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
@@ -58,7 +58,7 @@ class StageTurn:
         subgoals: Sequence[Subgoal],
         missing: Callable[[], str] = str,
         proof: Sequence[str] = (),
-        along: Callable[[Subgoal, Question], Decision] | None = None,
+        along: Callable[[Subgoal], Decision] | None = None,
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue."""
         return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, proof, along)
@@ -89,17 +89,18 @@ class StageTurn:
             left.remove(sense.doubt)
         return nothing_to_do("nothing must be told first")
 
-    def react(self, facts: Iterable[str], reflexes: Mapping[str, Callable[[], Decision]]) -> Decision:
+    def react(self, facts: Iterable[str], reflexes: "Mapping[str, Callable[[StageTurn], Decision]]") -> Decision:
         """Return the reflex that planner/asp/deciding/hand.lp chooses of those for which geometry finds a motion."""
         held = self.situation.model.held
         question = self.situation.question.adding([*facts, *([] if held is None else [f"holds({held})"])])
         while (name := str(argument(question.answer("hand") or (), "react"))) in reflexes:
-            if decision := reflexes[name]():
-                return replace(decision, question=question.keeping(f"react({name})"))
+            kept = question.keeping(f"react({name})")
+            if decision := reflexes[name](self.within(replace(self.situation, question=kept))):
+                return replace(decision, question=decision.question or kept)
             question = question.adding([f"vain({name})"])
         return nothing_to_do("no reflex is called for")
 
-    def see(self, see: See, along: Callable[[Subgoal, Question], Decision] | None = None) -> Decision:
+    def see(self, see: See, along: Callable[[Subgoal], Decision] | None = None) -> Decision:
         """Return the next command to see some squares; the steps of the plan come after those there. Or the verdict."""
         asked = self.within(replace(self.situation, question=see.question))
         decision = asked.seek([Subgoal(SubgoalKind.INSPECT, *see.viewpoint)], along=along)

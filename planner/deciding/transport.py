@@ -33,7 +33,6 @@ from utak.planner.goals.placement import Placement, meets_any_end, robot_can_lea
 from utak.planner.goals.robot_goals import unknown_destination
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.per_model import PerModel
-from utak.planner.question import Question
 from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.situation import Situation
 from utak.planner.skills.press import Presser
@@ -181,7 +180,9 @@ class Transporter:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
         if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
             looping = turn.executor.release_looping
-            let_go = turn.react([f"circles({node.name})"], {"let_go": lambda: turn.act(looping(turn.situation.model))})
+            let_go = turn.react(
+                [f"circles({node.name})"], {"let_go": lambda now: now.act(looping(now.situation.model))}
+            )
             if let_go:
                 return let_go
         grasps = isinstance(advice.command, Move | Grasp)
@@ -263,7 +264,7 @@ class Transporter:
         if robot_can_leave(held, turn.situation):
             return decision
 
-        def out() -> Decision:
+        def out(turn: StageTurn) -> Decision:
             """Return the push; nothing where geometry finds none, or where it would close a loop."""
             push = turn.executor.lead_out(held, turn.situation)
             if not isinstance(push, Act) or turn.closes_loop(push.command):
@@ -286,7 +287,7 @@ def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn)
     if not looks:
         return nothing_to_do("nothing is to be seen by the way")
 
-    def detour() -> Decision:
+    def detour(turn: StageTurn) -> Decision:
         """Return the push; nothing where geometry finds none."""
         regions = {name: end for name, end in land.ends.items() if isinstance(end, Inside)}
         push = turn.executor.detour(node, [look.squares for look in looks], regions, turn.situation)
@@ -295,17 +296,16 @@ def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn)
     return turn.react([f"pushed_on({node.name})"], {"detour": detour})
 
 
-def _take_along(node: Node, facts: Sequence[str], turn: StageTurn, subgoal: Subgoal, question: Question) -> Decision:
+def _take_along(node: Node, facts: Sequence[str], turn: StageTurn, subgoal: Subgoal) -> Decision:
     """Return the next command to take an object to a subgoal; nothing when the robot had better walk there alone."""
-    turn, executor = turn.within(replace(turn.situation, question=question)), turn.executor
 
-    def take() -> Decision:
+    def take(turn: StageTurn) -> Decision:
         """Return the push with the object in hand; nothing where geometry finds none."""
-        return _push_to_see(executor.take_along(node, subgoal.squares, turn.situation), subgoal.what, turn)
+        return _push_to_see(turn.executor.take_along(node, subgoal.squares, turn.situation), subgoal.what, turn)
 
-    def fetch() -> Decision:
+    def fetch(turn: StageTurn) -> Decision:
         """Return the next command to bring the object near; nothing where geometry finds no simple way."""
-        advice = executor.bring_near(node, subgoal.squares, turn.situation)
+        advice = turn.executor.bring_near(node, subgoal.squares, turn.situation)
         if isinstance(advice, Go):
             go = replace(advice, why=f"{node.name} is fetched, to be taken along: {subgoal.what}")
             return command_or_nothing(turn.go(go))
@@ -339,4 +339,4 @@ def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> De
     if not any(inside):
         return nothing_to_do(f"{node.name} would not stay where it is")
     near = look._replace(squares=look.squares[np.array(inside)])
-    return _take_along(node, [f"end_known({node.name})"], turn, near, turn.situation.question)
+    return _take_along(node, [f"end_known({node.name})"], turn, near)
