@@ -111,7 +111,10 @@ class Evidence:
         self.unit = DIRECTION_SCALE * parts  # a square: all lengths are whole numbers
         self.hindrance = [key for key in ("forked", "changes", "disturbed") if key in {*head}.union(*steps)]  # axiom 3
         self.hindrance += ["kb"] * (head["options"]["kb"] != [])
-        self.noise = Fraction(head["options"]["noise"])
+        noise = head["options"]["noise"]
+        if isinstance(noise, bool) or noise < 0:
+            raise ValueError("its noise is no number from 0 on")
+        self.noise = Fraction(noise)
 
     def allow(self, risk: int) -> None:
         """Take a risk, in millionths, that noise leads a command further beside its end than is worked out here."""

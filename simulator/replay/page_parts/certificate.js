@@ -711,6 +711,7 @@ const checkCertificate = (() => {
     const simple = wanted.shown.every(({ kind }) => kind === "felt");
     need(Array.isArray(cases) && (cases.length === 0) === simple, simple ? "touches show these goals, and no cases" : "cases are missing");
     const noise = decimal(episode.header.options.noise), isRisky = !simple && noise[0] !== 0n;
+    need(noise[0] >= 0n, "its noise is no number from 0 on");
     need(Number.isInteger(risk) && (isRisky ? risk > 0 && risk < 1e6 : risk === 0), isRisky ? "with noise there is a risk, in millionths" : "there is no risk to be taken");
     let shown = [];
     if (!simple) {

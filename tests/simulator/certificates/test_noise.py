@@ -69,6 +69,8 @@ def test_both_checkers_agree_on_risks_and_noises(tmp_path: Path) -> None:
     risks = [json.dumps(stated | {"risk": risk}) for risk in (10_000, 9000, 100, 1, 0, MILLION, -1, True, 1.5, None)]
     assert 1 <= accepted_by_both(tmp_path, found.text, risks) <= 2  # of 9000 millionths nothing else may follow
     assert accepted_by_both(tmp_path, with_noise(found, 0.2), risks) == 0  # the noise is read from the episode
+    assert accepted_by_both(tmp_path, with_noise(found, -NOISE), risks) == 0  # which is damaged then
+    assert accepted_by_both(tmp_path, with_noise(found, True), risks) == 0
     assert accepted_by_both(tmp_path, with_noise(found, 0.0), risks) == 0  # what cannot have happened is not treated
     assert accepted_by_both(tmp_path, found.text, [json.dumps({**stated, "cases": stated["cases"][:-2]})]) == 0
     assert accepted_by_both(tmp_path, found.text, [json.dumps(stated), *map(json.dumps, mutants(stated, 30, 1))]) > 0
