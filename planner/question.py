@@ -6,9 +6,9 @@ that was given before is asked with them, so users' rules may speak of all of it
 decision, and the one that is recorded.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from utak.kb.language.vocabulary import Signature
 from utak.kb.reasoning.encodings import SHARED_PARTS, BoundedAnswer, encoding_files
@@ -20,6 +20,7 @@ PLANNER_ASP = Path(__file__).resolve().parent / "asp"  # the folder of the plann
 DECIDING_ENCODING = PLANNER_ASP / "deciding"
 MAX_DECIDING_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
 Atoms = Sequence[Any]  # as clingo shows them
+Chosen = TypeVar("Chosen")  # what comes of an option; false for nothing
 
 
 class Question(NamedTuple):
@@ -48,6 +49,16 @@ class Question(NamedTuple):
         # parts : the files that make a choice, alone where no rules of users speak of several together; () for all
         with record_decisions():  # a part of a decision
             return solve(self._files(parts), self.facts, about=self.about)
+
+    def first_of(self, part: str, name: str, options: "Mapping[str, Callable[[Question], Chosen]]") -> Chosen | None:
+        """Return what comes of the option that a part of the program chooses of those of which something comes."""
+        # name : the predicate of the choice. Each option is called with what is given and the choice that is kept.
+        question = self
+        while (choice := str(argument(question.answer(part) or (), name))) in options:
+            if found := options[choice](question.keeping(f"{name}({choice})")):
+                return found
+            question = question.adding([f"vain({choice})"])
+        return None
 
     def recorded(self) -> list[Any] | None:
         """Return the same, and write it into the record of decisions."""

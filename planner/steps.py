@@ -99,9 +99,7 @@ def refusal(
 ) -> str:
     """Return why some steps, first the next one, may not be done, in words; "" where they may."""
     # question : where what was chosen before has one of its own. last : whether the answer is to be recorded.
-    held = situation.model.held
     given = (question or situation.question).adding(f"offered({number},{step})" for number, step in enumerate(steps))
-    given = given.adding([f"holds({held})"] * (held is not None))
     answer = given.recorded() if last else given.answer("senses", "steps")
     if _are_begun(answer or ()):
         return ""

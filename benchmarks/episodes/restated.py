@@ -69,7 +69,7 @@ def first_activity(facts: FactTable) -> str:
     came = {activity for activity, _ in facts.get("came_to", ())}
     goals = [goal for goal, _ in facts.get("stage_goal", ())]
     offered = [
-        *(["release"] if "robot_lost" in facts and "hand_full" in facts else []),
+        *(["release"] if "robot_lost" in facts and any(fact.startswith("holds(") for fact in facts) else []),
         *(["keep"] if "regions_forbidden" in facts else []),
         *(f"resume({name})" for (name,) in facts.get("begun", ())),
         *(["agree"] if goals else []),

@@ -27,7 +27,7 @@ DECIDED_INPUTS = frozenset({
     "waits", "holds", "kept", "offered", "thing", "goal", "bound_before", "planned",
     "given_up", "not_through", "due", "telling", "other_way", "looks_away", "lets_go", "vain",
     "stage_goal", "missing", "unclear", "own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful",
-    "hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted", "begun", "undid", "came_to",
+    "hand_unsure", "robot_lost", "unplanned", "map_contradicted", "begun", "undid", "came_to",
 })  # fmt: skip
 PARAMETER_INPUTS = frozenset({"bound_before", "planned", "given_up"})  # a parameter and a node, decided before
 WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # given to `task` as facts

@@ -104,8 +104,20 @@ DOUBTS: Forms = {  # what steps rest on
     "frame": (),
 }
 DOUBT_ARGUMENT = compound_argument("doubt", "doubts", DOUBTS)
-REFLEX_ARGUMENT = word_argument("reflex", ("draw_back", "let_go", "take_along", "fetch", "lead_out", "detour"))
-CHOSEN = {"do": ACTIVITY_ARGUMENT, "choose": NUMBER_ARGUMENT, "sense": DOUBT_ARGUMENT, "react": REFLEX_ARGUMENT}
+REFLEXES = ("draw_back", "let_go", "regrasp", "take_along", "fetch", "lead_out", "detour")
+REFLEX_ARGUMENT = word_argument("reflex", REFLEXES)
+ATTEMPTS = (  # what may be done for a thing that a goal is about
+    *("examine", "leave_open", "press", "believe", "carry", "carry_on", "carry_near", "settle_for", "carry_loosely"),
+    *("probe", "search"),
+)
+ATTEMPT_ARGUMENT = word_argument("attempt", ATTEMPTS)
+CHOSEN = {
+    "do": ACTIVITY_ARGUMENT,
+    "choose": NUMBER_ARGUMENT,
+    "sense": DOUBT_ARGUMENT,
+    "react": REFLEX_ARGUMENT,
+    "bring": ATTEMPT_ARGUMENT,
+}
 KEPT_CHOICES: Forms = {name: (argument,) for name, argument in CHOSEN.items()}  # made in one decision
 # By the name of an argument type of compound terms: these terms.
 COMPOUND_FORMS: Mapping[str, Forms] = {
@@ -295,7 +307,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
         **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
-        **{(name, 0): () for name in ("hand_full", "hand_unsure", "robot_lost", "unplanned", "map_contradicted")},
+        **{(name, 0): () for name in ("hand_unsure", "robot_lost", "unplanned", "map_contradicted")},
         **{(name, 0): () for name in ("stage_attained", "rules_close_all_doors", "begun")},
         ("begun", 1): (BEGUN_ARGUMENT,),
         ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
@@ -342,13 +354,19 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
             for names in (
                 "due vague in_way bars goes_on turned_next inexact drawable other_way misgrasped unmoving looks_away",
                 "in_place end_known minds_doors shuts_in taken_before lets_go pushed_on stays circles",
+                "to_bring formless pressed pressable attained tolerable origin_lost has_end near_end loose_end",
+                "end_open going_to_see probes see_first pressing firm",
             )
             for name in names.split()
         },
-        **{(name, 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT) for name in ("commands", "resists", "contacts")},
+        **{(name, 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT) for name in ("commands", "resists", "contacts", "misses")},
         ("looked", 2): (DOUBT_ARGUMENT, AMOUNT_ARGUMENT),
         ("reflex", 2): (REFLEX_ARGUMENT, NODE_ARGUMENT),
-        **{(name, 1): (REFLEX_ARGUMENT,) for name in ("react", "vain")},
+        ("react", 1): (REFLEX_ARGUMENT,),
+        ("attempt", 2): (ATTEMPT_ARGUMENT, NODE_ARGUMENT),
+        ("comes", 2): (ATTEMPT_ARGUMENT, AMOUNT_ARGUMENT),
+        ("bring", 1): (ATTEMPT_ARGUMENT,),
+        ("vain", 1): (word_argument("choice", (*REFLEXES, *ATTEMPTS)),),
     },
 }
 # Encodings that answer questions and decide nothing in a run.

@@ -81,7 +81,7 @@ class Activities:
         if (set(self._settling), set(self._resumed)) != (set(SETTLING_STEPS), set(RESUMED_STEPS)):
             raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
-        self._own = OwnGoals(where)
+        self._own, self._contacts = OwnGoals(where), PerModel(contact_subgoals)
         self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
         self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
@@ -149,7 +149,7 @@ class Activities:
 
     def _open(self, turn: StageTurn, agenda: Agenda) -> list[str]:
         """Return what is open, as facts for the task plan."""
-        untouched = ["untouched"] * bool(contact_subgoals(turn.situation))
+        untouched = ["untouched"] * bool(self._contacts(turn.situation))
         return [*_unknown(turn), *agenda.results, *untouched, *self._transporter.checks.facts(turn)]
 
     @property
@@ -213,6 +213,7 @@ class Activities:
         model = turn.situation.model
         yield from (f"stage_goal({name},{number})" for number, name in enumerate(turn.goals, 1))
         yield from _unknown(turn)
+        yield from [f"holds({model.held})"] * (model.held is not None)
         names = {goal: name for name, goal in turn.goals.items()}
         undid = [(a, b) for a, b, meant in self._undid if meant == turn.situation.named_by((a, b))]
         pairs = [(names[one], names[other]) for one, other in undid if {one, other} <= names.keys()]
@@ -224,7 +225,6 @@ class Activities:
             "own_goals": bool(turn.stage.own),
             "stages_attained": not turn.stage.goals,
             "regions_forbidden": any(True for _ in avoidances(turn.situation.task)),
-            "hand_full": model.held is not None,
             "hand_unsure": model.may_hold,
             "unplanned": self.errands.intention.attempt is not None,
             "robot_lost": model.lost,

@@ -37,7 +37,7 @@ from utak.planner.carrying.remaining_plan import (
     grasp_direction,
 )
 from utak.planner.goals.placement import end_away_from, pull_out_end
-from utak.planner.question import argument
+from utak.planner.question import Question
 from utak.planner.screen.moves import is_at
 from utak.planner.screen.projection import SquareIndices, square_index
 from utak.planner.situation import Situation
@@ -243,21 +243,30 @@ class PlanExecutor:
             self._contacts[name] = self._contacts.get(name, 0) + 1
         pushed, self._pushed = self._pushed, None
         drawable = held.moved and pushed is not None and self.pull
-        facts = [f"holds({name})", *resistance(held), f"contacts({name},{self._contacts.get(name, 0)})"]
+        facts = [*resistance(held), f"contacts({name},{self._contacts.get(name, 0)})"]
         given = {"inexact": held.inexact, "drawable": drawable, "other_way": other_way}
-        question = situation.question.adding([*facts, *(f"{fact}({name})" for fact, is_so in given.items() if is_so)])
-        answer = question.answer("hand") or ()
-        if any(atom.name == "misgrasped" for atom in answer):
-            self.failed.record(held, model)
-        reflex = str(argument(answer, "react"))
-        question = question.keeping(f"react({reflex})")
-        if reflex == "draw_back" and pushed is not None:
+        facts += [f"{fact}({name})" for fact, is_so in given.items() if is_so]
+
+        def draw_back(question: Question) -> Act | None:
+            """Return the push back from what stopped it."""
+            if pushed is None:
+                return None
             doubted = self._contacts[name] > 1 or not is_grid_aligned(held.polygon)
             retreat = retreat_push(held, pushed, model, doubted)
             return Act(command_of(retreat, model), f"{name} is drawn back from what stopped it", question=question)
-        if reflex == "let_go":
+
+        def let_go(question: Question) -> Act:
+            """Return the release."""
             return Act(Release(), f"{name} is released, because it did not move", question=question)
-        return Infeasibility(False, "nothing is done about what did not move")
+
+        def regrasp(question: Question) -> Act:
+            """Return the same, after the grasp is marked as failed."""
+            self.failed.record(held, model)
+            return let_go(question)
+
+        reflexes = {"draw_back": draw_back, "let_go": let_go, "regrasp": regrasp}
+        found = situation.question.adding(facts).first_of("hand", "react", reflexes)
+        return found or Infeasibility(False, "nothing is done about what did not move")
 
     # -- making a plan ---------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from utak.geometry.kernels.arrays import XY
 from utak.kb.body import Command, Move
@@ -15,7 +15,7 @@ from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
 from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
 from utak.planner.navigation.subgoals import Subgoal
-from utak.planner.question import argument
+from utak.planner.question import Question
 from utak.planner.screen.moves import halt_exactly_at
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
@@ -91,14 +91,19 @@ class StageTurn:
 
     def react(self, facts: Iterable[str], reflexes: "Mapping[str, Callable[[StageTurn], Decision]]") -> Decision:
         """Return the reflex that planner/asp/deciding/hand.lp chooses of those for which geometry finds a motion."""
-        held = self.situation.model.held
-        question = self.situation.question.adding([*facts, *([] if held is None else [f"holds({held})"])])
-        while (name := str(argument(question.answer("hand") or (), "react"))) in reflexes:
-            kept = question.keeping(f"react({name})")
-            if decision := reflexes[name](self.within(replace(self.situation, question=kept))):
-                return replace(decision, question=decision.question or kept)
-            question = question.adding([f"vain({name})"])
-        return nothing_to_do("no reflex is called for")
+        return self.first_of("hand", "react", facts, reflexes) or nothing_to_do("no reflex is called for")
+
+    def first_of(
+        self, part: str, name: str, facts: Iterable[str], options: "Mapping[str, Callable[[StageTurn], Decision]]"
+    ) -> Decision | None:
+        """Return what comes of the option that a part of planner/asp/deciding chooses: see Question.first_of."""
+        doing = {option: partial(self._so, do) for option, do in options.items()}
+        return self.situation.question.adding(facts).first_of(part, name, doing)
+
+    def _so(self, do: "Callable[[StageTurn], Decision]", question: Question) -> Decision:
+        """Return what is decided where a question is as it is given."""
+        decision = do(self.within(replace(self.situation, question=question)))
+        return replace(decision, question=decision.question or question)
 
     def see(self, see: See, along: Callable[[Subgoal], Decision] | None = None) -> Decision:
         """Return the next command to see some squares; the steps of the plan come after those there. Or the verdict."""

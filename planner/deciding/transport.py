@@ -4,7 +4,7 @@ planner.carrying.plan_executor says what to do with the object. Here it is settl
 infeasibility certificate proves.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -38,7 +38,7 @@ from utak.planner.situation import Situation
 from utak.planner.skills.press import Presser
 from utak.planner.stages import Stage
 
-MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looked at first; tuned on random worlds
+UNKNOWN_PLACEMENT = Placement({}, "its outline is not known")  # of what has no outline
 
 
 class Transporter:
@@ -49,11 +49,11 @@ class Transporter:
         self.place: Callable[[Fact, Node, XY, Situation], Placement] = PerModel(goal_placement)
         self.search: Callable[..., Sequence[Subgoal]] = subgoals_towards
         self._origins = Origins()
-        self._presser, self.checks = Presser(), RefusalChecks()
+        self.presser, self.checks = Presser(), RefusalChecks()
         # How many squares had been looked from when the robot went to see where an object must end, until one is added.
-        self._looked_before = 0
+        self.looked_before = 0
         self._is_measuring = False  # whether the last command was to measure what a parameter may mean
-        self._has_taken_along = False  # whether an object that shut the robot in was taken along to look
+        self.has_taken_along = False  # whether an object that shut the robot in was taken along to look
 
     def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
         """Return where the object that a parameter means lay at first: the middle (x, y), in squares, map frame."""
@@ -62,68 +62,32 @@ class Transporter:
     def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds."""
         node = turn.situation.object_of(str(goal.args[0]))
-        if node is None:
-            return self._find(goal, turn)
-        examined = self._examine(goal, node, turn)
-        return self._carry(goal, node, turn, end) if examined.result == "idle" else examined
+        return self._find(goal, turn) if node is None else self._bring(goal, node, turn, end)
 
-    def _examine(self, goal: Fact, node: Node, turn: StageTurn) -> Decision:
-        """Return the next look at the object of a goal of which something is not clear; nothing when all is clear."""
-        if node.polygon is not None and self._presser.is_pressed(goal, node, turn.situation):
-            pressed = self._press_on(node, turn)
-            if pressed or not self._land(goal, node, turn).viewpoints:
-                return pressed or done(f"{goal} holds")
-        due = (f"due({node.name})",)
-        if look := turn.make_sure(doubts_of_thing(node, due, turn.situation, must=True)):
-            return look
-        if node.polygon is None:
-            why = f"{turn.stage} is not attempted: the outline of {node.name} is not known"
-            return Decision(None, why, TaskVerdict.LIMIT)
-        return nothing_to_do(f"{node.name} is clear")
-
-    def _carry(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
-        """Return the next command to carry the object of a goal, or the verdict; done when the goal holds."""
-        assert node.polygon is not None
-        land = self._land(goal, node, turn)
+    def _bring(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
+        """Return the same for an object that was found, as planner/asp/deciding/bring.lp chooses."""
+        land, lost = UNKNOWN_PLACEMENT, ""
+        if node.polygon is not None:
+            land, lost = self._land(goal, node, turn), self._origins.lost(goal, node, turn.situation)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
-        lost = self._origins.lost(goal, node, turn.situation)
-        if lost and (land.holds or meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation))):
-            return Decision(None, f"it cannot be told whether {turn.stage} holds: {lost}", TaskVerdict.LIMIT)
-        if land.holds:
-            self._presser.begin(goal, node, land, turn.situation)
-            return self._press_on(node, turn) or done(f"{goal} holds")
-        if land.presses and not self._presser.has_begun(goal, node):
-            self._presser.begin(goal, node, land, turn.situation)
-            if pressed := self._press_on(node, turn):
-                return pressed
-        advice = self._advice(node, land, turn)
-        if isinstance(advice, Infeasibility) and land.loose:
-            if meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation)):
-                return done(f"{goal} holds")
-            advice = turn.executor.advise(node, land.loose, turn.situation)
-        if isinstance(advice, Infeasibility) and land.some:
-            advice = replace(advice, proved=False)
-        if isinstance(advice, Act):
-            return _look_by_the_way(advice, node, land, turn) or self._act(advice, node, turn)
-        if isinstance(advice, Go):
-            walk = turn.go(advice)
-            if walk.command is not None:
-                return walk
-            advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
-        turn = turn.within(turn.situation.along_with(node.patch)) if land.shut_in else turn
-        if isinstance(advice, See):
-            facts = [f"end_known({node.name})", *[f"minds_doors({node.name})"] * turn.situation.minds_doors(node.name)]
-            return turn.see(advice, partial(_take_along, node, facts, turn))
-        # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
-        if self.checks.is_probing(node, turn):
-            refusal = Refusal(node, land.must_reach.ends() or land.ends, advice)
-            if probe := self.checks.probed(refusal, turn):
-                return probe
-        unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
-        subgoals = self.search([unknown], turn.situation, turn.reconciled)
-        decision = self._look_for_way(advice, node, land, subgoals, turn)
-        return self._check_proof(Refusal(node, land.ends, advice), decision, goal, land, turn)
+        doing = _Bringing(self, goal, node, land, turn)
+        attempts: Mapping[str, Callable[[StageTurn], Decision]] = {
+            "examine": doing.examine,
+            "leave_open": partial(_leave_open, lost or land.missing),
+            "press": doing.press,
+            "believe": doing.believe,
+            "carry": doing.carry,
+            "carry_on": doing.carry_on,
+            "carry_near": doing.carry_near,
+            "settle_for": doing.believe,
+            "carry_loosely": doing.carry_loosely,
+            "probe": doing.probe,
+            "search": doing.seek,
+        }
+        facts = [*doing.facts(turn), *[f"origin_lost({node.name})"] * bool(lost)]
+        why = f"{turn.stage} is not attained as far as is known: users' rules forbid what may be done with {node.name}"
+        return turn.first_of("bring", "bring", facts, attempts) or Decision(None, why, TaskVerdict.LIMIT)
 
     def may_bring(self, goal: Fact, turn: StageTurn, supposed: Situation) -> bool:
         """Return whether the object of a goal may be brought in another situation to where the goal holds now."""
@@ -176,84 +140,6 @@ class Transporter:
         self._is_measuring = bool(push)
         return push or decision
 
-    def _act(self, advice: Act, node: Node, turn: StageTurn) -> Decision:
-        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
-        if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
-            looping = turn.executor.release_looping
-            let_go = turn.react(
-                [f"circles({node.name})"], {"let_go": lambda now: now.act(looping(now.situation.model))}
-            )
-            if let_go:
-                return let_go
-        grasps = isinstance(advice.command, Move | Grasp)
-        if grasps and (look := turn.make_sure(doubt_of_frame(node, turn.executor.turns, turn.situation))):
-            return look
-        if isinstance(advice.command, Push | Turn):
-            self._presser.forget()
-        return turn.act(advice)
-
-    def _look_for_way(
-        self,
-        refused: Infeasibility,
-        node: Node,
-        land: Placement,
-        subgoals: Sequence[Subgoal],
-        turn: StageTurn,
-    ) -> Decision:
-        """Return the next command to see where an object shall end, or another way there; or the verdict."""
-        # Where a door may be is looked at from places where the object would be in the way, and another way is looked
-        # for without it.
-        end_known = bool(land.viewpoints or land.ends) or orientation_is_uncertain(turn.situation.model)
-        given = {
-            "in_place": land.there,
-            "minds_doors": turn.situation.minds_doors(node.name),
-            "end_known": end_known,
-            "shuts_in": land.shut_in,
-            "taken_before": land.shut_in and self._has_taken_along,
-        }
-        along = partial(_take_along, node, [f"{fact}({node.name})" for fact, is_so in given.items() if is_so], turn)
-        decision = turn.seek(subgoals, refused.reason, refused.proof(), along)
-        self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
-        if land.shut_in and not isinstance(decision.command, Push | Turn):
-            why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
-            decision = Decision(None, why, TaskVerdict.LIMIT)
-        return decision
-
-    def _check_proof(
-        self, refusal: Refusal, decision: Decision, goal: Fact, land: Placement, turn: StageTurn
-    ) -> Decision:
-        """Return a decision whose verdict is `impossible` only where that is proved, and note what proves it."""
-        if decision.verdict and (must_reach := land.must_reach.ends()):
-            refusal = refusal._replace(ends=must_reach)
-            shut_off = turn.executor.infeasibility(refusal.node, must_reach, turn.situation)
-            if shut_off is not None and shut_off.proved:
-                why = f"{turn.stage} cannot be attained: {shut_off.reason()}"
-                refusal, decision = refusal._replace(refused=shut_off), impossible(why, *shut_off.proof())
-        if decision.verdict != TaskVerdict.IMPOSSIBLE:
-            return decision
-        return self.checks.noted(goal, refusal, decision)
-
-    def _advice(self, node: Node, land: Placement, turn: StageTurn) -> Advice:
-        """Return what to do to carry an object to where its goal holds; while that is not known, to near it."""
-        executor, situation = turn.executor, turn.situation
-        looked = len(situation.model.looked_from)
-        missed = land.ends and executor.missed >= MAX_MISSED_PLANS
-        if land.viewpoints and (looked == self._looked_before or missed):
-            executor.forget_misses()
-            self._looked_before = looked
-            return Infeasibility(not situation.model.shaken, land.missing)
-        if land.ends:
-            return executor.advise(node, land.ends, situation, land.hoped.ends)
-        onward = executor.continue_plan(node, situation)
-        if isinstance(onward, Act):
-            return onward
-        for name, end in land.approach.items() if not situation.minds_doors(node.name) else ():
-            advice = executor.advise(node, {name: end}, situation, land.hoped.ends)
-            if isinstance(advice, Act | Go):
-                return advice
-        self._looked_before = looked
-        return Infeasibility(not situation.model.shaken, land.missing)
-
     def led_out(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; in place of a release, or of giving up, the push after which the robot is not shut in."""
         model = turn.situation.model
@@ -269,16 +155,175 @@ class Transporter:
             push = turn.executor.lead_out(held, turn.situation)
             if not isinstance(push, Act) or turn.closes_loop(push.command):
                 return nothing_to_do(f"no push leads {held.name} out")
-            self._presser.forget()
+            self.presser.forget()
             return turn.act(push)
 
         return turn.react([f"lets_go({held.name})", f"shuts_in({held.name})"], {"lead_out": out}) or decision
 
-    def _press_on(self, node: Node, turn: StageTurn) -> Decision:
-        """Return the next press of a held object against a wall; nothing where none is left."""
-        if self._presser.has_next(node):
-            return turn.act(self._presser.next(node, turn.situation.model))
-        return nothing_to_do(f"{node.name} is pressed")
+
+class _Bringing:
+    """What may be done in one decision to bring an object to where a goal holds, and why geometry refused it last."""
+
+    def __init__(self, by: Transporter, goal: Fact, node: Node, land: Placement, turn: StageTurn) -> None:
+        """Make one of which nothing was tried."""
+        self._by, self._goal, self._node, self._land = by, goal, node, land
+        self._refused = Infeasibility(not turn.situation.model.shaken, land.missing)
+
+    def facts(self, turn: StageTurn) -> Iterator[str]:
+        """Yield what bring.lp is given of the object and its goal, as facts."""
+        node, land, situation, name = self._node, self._land, turn.situation, self._node.name
+        presser = self._by.presser
+        given = {
+            "to_bring": True,
+            "formless": node.polygon is None,
+            "pressed": node.polygon is not None and presser.is_pressed(self._goal, node, situation),
+            "pressable": land.presses and not presser.has_begun(self._goal, node),
+            "attained": land.holds,
+            "tolerable": land.loose and meets_any_end(land.loose, to_view_frame(node.polygon, situation)),
+            "has_end": land.ends,
+            "near_end": land.approach,
+            "loose_end": land.loose,
+            "end_open": land.viewpoints,
+            "going_to_see": len(situation.model.looked_from) == self._by.looked_before,
+            "minds_doors": situation.minds_doors(name),
+            "probes": self._by.checks.is_probing(node, turn),
+        }
+        yield from (f"{fact}({name})" for fact, is_so in given.items() if is_so)
+        yield f"misses({name},{turn.executor.missed})"
+
+    def examine(self, turn: StageTurn) -> Decision:
+        """Return the next look at what is not clear of the object."""
+        return turn.make_sure(doubts_of_thing(self._node, (f"due({self._node.name})",), turn.situation, must=True))
+
+    def press(self, turn: StageTurn) -> Decision:
+        """Return the next press of the object against a wall, where it is in hand."""
+        presser, node = self._by.presser, self._node
+        if not presser.has_begun(self._goal, node):
+            presser.begin(self._goal, node, self._land, turn.situation)
+        if not presser.has_next(node):
+            return nothing_to_do(f"{node.name} is pressed")
+        return turn.act(presser.next(node, turn.situation.model))
+
+    def believe(self, _: StageTurn) -> Decision:
+        """Return that the goal holds."""
+        return done(f"{self._goal} holds")
+
+    def carry(self, turn: StageTurn) -> Decision:
+        """Return the next command to carry the object to where it must end."""
+        land = self._land
+        return self._follow(turn.executor.advise(self._node, land.ends, turn.situation, land.hoped.ends), turn)
+
+    def carry_on(self, turn: StageTurn) -> Decision:
+        """Return the next command of the plan under way with the object in hand."""
+        onward = turn.executor.continue_plan(self._node, turn.situation)
+        return self._act(onward, turn) if isinstance(onward, Act) else nothing_to_do("no plan is under way")
+
+    def carry_near(self, turn: StageTurn) -> Decision:
+        """Return the next command to carry the object to where its end is seen better."""
+        node, land = self._node, self._land
+        for name, end in land.approach.items():
+            advice = turn.executor.advise(node, {name: end}, turn.situation, land.hoped.ends)
+            if isinstance(advice, Act | Go):
+                return self._follow(advice, turn)
+        return nothing_to_do(f"{node.name} can be brought no nearer")
+
+    def carry_loosely(self, turn: StageTurn) -> Decision:
+        """Return the next command to carry the object to where it will do."""
+        return self._follow(turn.executor.advise(self._node, self._land.loose, turn.situation), turn)
+
+    def probe(self, turn: StageTurn) -> Decision:
+        """Return the next push of the object where a passage may be wide enough."""
+        # What a stopped trial showed is looked at after the other trials: the robot would let the object go for it.
+        ends = self._land.must_reach.ends() or self._land.ends
+        return self._by.checks.probed(Refusal(self._node, ends, self._refused), self._without(turn))
+
+    def seek(self, turn: StageTurn) -> Decision:
+        """Return the next command to see where the object must end, or another way there; or the verdict."""
+        if "vain(carry)" not in turn.situation.question.facts:  # it goes to see where the object must end
+            turn.executor.forget_misses()
+            self._by.looked_before = len(turn.situation.model.looked_from)
+        turn, land = self._without(turn), self._land
+        unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
+        subgoals = self._by.search([unknown], turn.situation, turn.reconciled)
+        return self._check_proof(self._look_for_way(subgoals, turn), turn)
+
+    def _without(self, turn: StageTurn) -> StageTurn:
+        """Return the turn in which the object blocks no way where it shuts the robot in: it is taken along then."""
+        return turn.within(turn.situation.along_with(self._node.patch)) if self._land.shut_in else turn
+
+    def _follow(self, advice: Advice, turn: StageTurn) -> Decision:
+        """Return the command that some advice asks for; nothing where there is none, and note why."""
+        node = self._node
+        if isinstance(advice, Act):
+            return self._act(advice, turn)
+        if isinstance(advice, Go):
+            walk = turn.go(advice)
+            if walk.command is not None:
+                return walk
+            advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
+        if isinstance(advice, See):
+            facts = [f"end_known({node.name})", *[f"minds_doors({node.name})"] * turn.situation.minds_doors(node.name)]
+            return turn.see(advice, partial(_take_along, node, facts, self._without(turn)))
+        self._refused = replace(advice, proved=False) if self._land.some else advice
+        return nothing_to_do(self._refused.reason())
+
+    def _act(self, advice: Act, turn: StageTurn) -> Decision:
+        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
+        node = self._node
+        if looked := _look_by_the_way(advice, node, self._land, turn):
+            return looked
+        if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
+            looping = turn.executor.release_looping
+            regrasp = {"regrasp": lambda now: now.act(looping(now.situation.model))}
+            if let_go := turn.react([f"circles({node.name})"], regrasp):
+                return let_go
+        grasps = isinstance(advice.command, Move | Grasp)
+        if grasps and (look := turn.make_sure(doubt_of_frame(node, turn.executor.turns, turn.situation))):
+            return look
+        if isinstance(advice.command, Push | Turn):
+            self._by.presser.forget()
+        return turn.act(advice)
+
+    def _look_for_way(
+        self,
+        subgoals: Sequence[Subgoal],
+        turn: StageTurn,
+    ) -> Decision:
+        """Return the next command to see where an object shall end, or another way there; or the verdict."""
+        refused, node, land = self._refused, self._node, self._land
+        end_known = bool(land.viewpoints or land.ends) or orientation_is_uncertain(turn.situation.model)
+        given = {
+            "in_place": land.there,
+            "minds_doors": turn.situation.minds_doors(node.name),
+            "end_known": end_known,
+            "shuts_in": land.shut_in,
+            "taken_before": land.shut_in and self._by.has_taken_along,
+        }
+        along = partial(_take_along, node, [f"{fact}({node.name})" for fact, is_so in given.items() if is_so], turn)
+        decision = turn.seek(subgoals, refused.reason, refused.proof(), along)
+        self._by.has_taken_along |= land.shut_in and isinstance(decision.command, Push)
+        if land.shut_in and not isinstance(decision.command, Push | Turn):
+            why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
+            decision = Decision(None, why, TaskVerdict.LIMIT)
+        return decision
+
+    def _check_proof(self, decision: Decision, turn: StageTurn) -> Decision:
+        """Return a decision whose verdict is `impossible` only where that is proved, and note what proves it."""
+        refusal = Refusal(self._node, self._land.ends, self._refused)
+        if decision.verdict and (must_reach := self._land.must_reach.ends()):
+            refusal = refusal._replace(ends=must_reach)
+            shut_off = turn.executor.infeasibility(refusal.node, must_reach, turn.situation)
+            if shut_off is not None and shut_off.proved:
+                why = f"{turn.stage} cannot be attained: {shut_off.reason()}"
+                refusal, decision = refusal._replace(refused=shut_off), impossible(why, *shut_off.proof())
+        if decision.verdict != TaskVerdict.IMPOSSIBLE:
+            return decision
+        return self._by.checks.noted(self._goal, refusal, decision)
+
+
+def _leave_open(missing: str, turn: StageTurn) -> Decision:
+    """Return the verdict that it cannot be told whether a stage can be attained."""
+    return Decision(None, f"it cannot be told whether {turn.stage} holds: {missing}", TaskVerdict.LIMIT)
 
 
 def _look_by_the_way(planned: Act, node: Node, land: Placement, turn: StageTurn) -> Decision:

@@ -12,7 +12,7 @@ CHOICES = {
     ("activities", "verdicts"): {"do", "stuck", "stage_attained", "suppose", "depends", "verdict"},
     ("subgoals",): {"choose"},
     ("senses",): {"sense"},
-    ("hand",): {"react", "misgrasped"},
+    ("hand",): {"react"},
     ("senses", "steps"): {"begun", "sense"},
     ("walks",): {"step", "walked"},
 }

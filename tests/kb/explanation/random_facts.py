@@ -54,7 +54,7 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "deciding": {
         "stage_goal": (("g1", "g2"), (1, 2)), "missing": (("g1", "g2"),), "unclear": (("g1", "g2"),),
         "own_goals": (), "regions_forbidden": (),
-        "stages_attained": (), "constraints_doubtful": (), "hand_full": (), "robot_lost": (), "map_contradicted": (),
+        "stages_attained": (), "constraints_doubtful": (), "robot_lost": (), "map_contradicted": (),
         "hand_unsure": (), "begun": (("clear", "feel"),), "came_to": (ACTIVITIES, ("idle", "done", "impossible")),
         "aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": ((*NUMBERS, *WAYS),),
         "aim_price": (NUMBERS, (30, 200)),

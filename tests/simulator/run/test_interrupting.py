@@ -95,6 +95,8 @@ def test_a_step_interrupted_anywhere_did_not_happen(tmp_path: Path, scripted: No
 
 
 @pytest.mark.long
+# Python itself calls destructors and the callbacks of its collector: an alarm there is only reported.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_the_robot_continues_unchanged_after_an_interrupted_step(tmp_path: Path) -> None:
     for name, text in NEW_SCENARIO_FILES.items():
         (tmp_path / name).write_text(text)
