@@ -237,7 +237,7 @@ AGENDA_STEPS = {
 }
 SETTLING_WORDS = {**SETTLING_STEPS, **AGENDA_STEPS}
 # Those that are gone on with in later decisions, before anything else.
-RESUMED_STEPS = ("make_way", "try", "feel", "gauge")
+RESUMED_STEPS = ("make_way", "try", "feel", "measure", "gauge")
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),

@@ -295,6 +295,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **dict.fromkeys([("thing", 1), ("holds", 1)], (NODE_ARGUMENT,)),
         **OUTCOME,
         ("settles", 2): (STEP_ARGUMENT, SUBJECT_ARGUMENT),
+        ("measurable", 1): (SUBJECT_ARGUMENT,),
         **{(name, 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT) for name in ("default_price", "price")},
         ("left", 1): (STEP_ARGUMENT,),
         ("settled", 2): (SUBJECT_ARGUMENT, TIME_ARGUMENT),
@@ -379,8 +380,8 @@ PLAN_FACTS = frozenset(
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
-        "default_price", "acts", "waits", "infeasible", "narrow", "holds", "left", "shaken", "settling", "settled",
-        "missing", "unclear", "came_to", "stuck",
+        "default_price", "acts", "waits", "infeasible", "measurable", "narrow", "holds", "left", "shaken",
+        "settling", "settled", "missing", "unclear", "came_to", "stuck",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.

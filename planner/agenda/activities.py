@@ -76,6 +76,7 @@ class Activities:
             "feel": (clearer.is_feeling, clearer.feel_on),
             "make_way": (clearer.is_moving, clearer.clear_on),
             "try": (trials.is_pushing, trials.go_on),
+            "measure": (checks.is_measuring, checks.measure_on),
             "gauge": (checks.is_at_wall, checks.step_back),
         }
         if (set(self._settling), set(self._resumed)) != (set(SETTLING_STEPS), set(RESUMED_STEPS)):
@@ -246,18 +247,13 @@ class Activities:
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(turn),
             "settle": self._nothing_settles,
-            "go": lambda: self._go(turn),
+            "go": lambda: self._own.go(turn, self.errands.intention),
             "clash": lambda: _clash(goals[0], stage),
             "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
             "blame": lambda: _added(last, self._clearer.blame(turn.situation)),
         }
         return doing[activity.kind]()
-
-    def _go(self, turn: StageTurn) -> Decision:
-        """Return the next command to where the robot shall be, or to tell what that is about; or the verdict."""
-        meant = {str(term) for goal in turn.stage.own for term in goal.args[1:]}
-        return self._transporter.measured(meant, self._own.go(turn, self.errands.intention), turn)
 
     def _towards_first(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command towards the first of some goals for objects, or what it came to."""

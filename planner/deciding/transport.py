@@ -4,7 +4,7 @@ planner.carrying.plan_executor says what to do with the object. Here it is settl
 infeasibility certificate proves.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -52,7 +52,6 @@ class Transporter:
         self.presser, self.checks = Presser(), RefusalChecks()
         # How many squares had been looked from when the robot went to see where an object must end, until one is added.
         self.looked_before = 0
-        self._is_measuring = False  # whether the last command was to measure what a parameter may mean
         self.has_taken_along = False  # whether an object that shut the robot in was taken along to look
 
     def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
@@ -127,18 +126,7 @@ class Transporter:
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
-        return self.measured([x], decision, turn)
-
-    def measured(self, parameters: Collection[str], decision: Decision, turn: StageTurn) -> Decision:
-        """Return a decision; in place of a verdict the next push to measure what parameters may mean."""
-        goes_on = self._is_measuring and isinstance(decision.command, Release)
-        push = nothing_to_do("nothing is to be measured")
-        if decision.verdict not in (None, TaskVerdict.DONE) or goes_on:
-            like = [name for parameter, name in turn.reconciled.measurable if parameter in parameters]
-            seen = (thing for thing in turn.situation.model.objects if thing.name in like)
-            push = next(filter(None, (self.checks.push_to_measure(thing, turn) for thing in seen)), push)
-        self._is_measuring = bool(push)
-        return push or decision
+        return decision
 
     def led_out(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; in place of a release, or of giving up, the push after which the robot is not shut in."""

@@ -21,7 +21,7 @@ from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.plan_executor import Advice
 from utak.planner.deciding.bringing import ASIDE_TARGET, another_way, bring_to_end, carry_on
 from utak.planner.deciding.feeling import feel_rims, feeling_scope, walls_to_feel
-from utak.planner.deciding.stage_turn import StageTurn
+from utak.planner.deciding.stage_turn import ROBOT_ITSELF, StageTurn
 from utak.planner.decision import Decision, TaskVerdict, impossible, nothing_to_do
 from utak.planner.goals.placement import NEGLIGIBLE_LENGTH, end_away_from, lies_clear_of
 from utak.planner.navigation.subgoals import Subgoal
@@ -93,6 +93,7 @@ class RefusalChecks:
         """Make one that sought nothing."""
         self._refusals: dict[Fact, Refusal] = {}  # by the goals for objects, in the present decision
         self._sizes, self._passages, self._gaps = SizeEstimator(), PassageTrials(), GapMeasurer()
+        self._alike = ""  # the thing that was measured last to know whether goals are about it
 
     def begin(self, turn: StageTurn) -> None:
         """Begin a decision, and note what the newest walk against a side of a passage showed."""
@@ -105,13 +106,15 @@ class RefusalChecks:
         return replace(decision, unless=refusal.refused.unless(), near=refusal.refused.neck())
 
     def facts(self, turn: StageTurn) -> Iterator[str]:
-        """Yield which goals for objects are refused, and which of them for a passage that may be wider, as facts."""
+        """Yield which goals are refused, which for a passage that may be wider, and what may be measured, as facts."""
         for name, goal in turn.goals.items():
             refusal = self._refusals.get(goal)
             if refusal is not None:
                 yield f"infeasible({name})"
                 if refusal.refused.unless():
                     yield f"narrow({name})"
+        subjects = (*turn.goals, ROBOT_ITSELF)
+        yield from (f"measurable({subject})" for subject in subjects if _alike(turn.goals_of(subject), turn))
 
     def is_at_wall(self, situation: Situation) -> bool:
         """Return whether the robot has just walked against a side of a passage: nothing comes before the step back."""
@@ -132,9 +135,13 @@ class RefusalChecks:
         return turn.look_if_reached(turn.verifier.recheck_passage(refused, turn.situation))
 
     def measure(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to measure the object of a goal; `limit` where it may be smaller than it seems."""
+        """Return the next command to measure what goals are about; `limit` where it may be smaller than it seems."""
+        if push := self._measure_alike(goals, turn):
+            return push
+        if goals[0] not in self._refusals:
+            return nothing_to_do("nothing is left to measure")
         node, ends, _ = self._refusals[goals[0]]
-        if push := self.push_to_measure(node, turn):
+        if push := self._push_to_measure(node, turn):
             return push
         least = least_outline(node)
         refused = least and ends and turn.executor.infeasibility(replace(node, polygon=least), ends, turn.situation)
@@ -143,7 +150,24 @@ class RefusalChecks:
         why = f"it cannot be told whether {turn.stage} can be attained: the size of {node.name} is not known well"
         return Decision(None, why, TaskVerdict.LIMIT)
 
-    def push_to_measure(self, node: Node, turn: StageTurn) -> Decision:
+    def is_measuring(self, situation: Situation) -> bool:
+        """Return whether a thing is in hand that is measured to know whether goals are about it."""
+        return bool(self._alike) and situation.model.held == self._alike
+
+    def measure_on(self, turn: StageTurn) -> Decision:
+        """Return the next command to measure the thing in hand; nothing when that is done, or not asked any more."""
+        return self._measure_alike(turn.stage.goals, turn)
+
+    def _measure_alike(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command to measure what goals may be about; nothing when that is done."""
+        for thing in _alike(goals, turn):
+            if push := self._push_to_measure(thing, turn):
+                self._alike = thing.name
+                return push
+        self._alike = ""
+        return nothing_to_do("nothing more can be measured of what may be meant")
+
+    def _push_to_measure(self, node: Node, turn: StageTurn) -> Decision:
         """Return the next command to push an object by a part of a square, to measure it; nothing when that is done."""
         for pose in self._sizes.poses(node):
             why = f"the size of {node.name} is not sure, so it is measured"
@@ -223,3 +247,10 @@ def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision:
     if isinstance(advice, Act):
         return turn.act(advice, why)
     return turn.prepare(advice)
+
+
+def _alike(goals: Sequence[Fact], turn: StageTurn) -> list[Node]:
+    """Return the things that some goals may be about once the size of these is known better."""
+    about = {str(term) for goal in goals for term in goal.args}
+    like = {name for parameter, name in turn.reconciled.measurable if parameter in about}
+    return [thing for thing in turn.situation.model.objects if thing.name in like]

@@ -13,6 +13,7 @@ CHOICES = {
     ("subgoals",): {"choose"},
     ("senses",): {"sense"},
     ("hand",): {"react"},
+    ("bring",): {"bring"},
     ("senses", "steps"): {"begun", "sense"},
     ("walks",): {"step", "walked"},
 }
