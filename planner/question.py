@@ -20,7 +20,7 @@ PLANNER_ASP = Path(__file__).resolve().parent / "asp"  # the folder of the plann
 DECIDING_ENCODING = PLANNER_ASP / "deciding"
 MAX_DECIDING_CONFLICTS = 20_000  # of clingo's search for a walk; a bound on work, so that all machines do the same
 Atoms = Sequence[Any]  # as clingo shows them
-Chosen = TypeVar("Chosen")  # what comes of an option; false for nothing
+Found = TypeVar("Found")  # what comes of an option; false for nothing
 
 
 class Question(NamedTuple):
@@ -50,7 +50,7 @@ class Question(NamedTuple):
         with record_decisions():  # a part of a decision
             return solve(self._files(parts), self.facts, about=self.about)
 
-    def first_of(self, part: str, name: str, options: "Mapping[str, Callable[[Question], Chosen]]") -> Chosen | None:
+    def first_of(self, part: str, name: str, options: "Mapping[str, Callable[[Question], Found]]") -> Found | None:
         """Return what comes of the option that a part of the program chooses of those of which something comes."""
         # name : the predicate of the choice. Each option is called with what is given and the choice that is kept.
         question = self

@@ -67,7 +67,6 @@ SEEN_ARGUMENTS = (PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT)  # a pr
 CLAIM_ARGUMENT = word_argument("claim", (*PROPERTIES, *CLAIMED_RELATIONS))
 RELATION_ARGUMENT = word_argument("relation", CLAIMED_RELATIONS)
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
-MEANING_ARGUMENTS = (PARAMETER_ARGUMENT, NODE_ARGUMENT)  # what a parameter means
 MOVER_ARGUMENT = pattern_argument("thing or utak", "o[0-9]+|utak|start", "o1")  # a thing of the task plan, or the robot
 # The steps of a task plan.
 PLAN_STEPS: Forms = {
@@ -91,10 +90,8 @@ EXCLUSIVE_QUESTIONS: Forms = {  # whose answers exclude each other
 QUESTION_ARGUMENT = compound_argument("question", "questions", EXCLUSIVE_QUESTIONS)
 ACTS: Forms = dict.fromkeys(("feel", "look", "push"), (THING_ARGUMENT,))  # that decide whether such a fact holds
 BEGUN_ARGUMENT = word_argument("begun activity", RESUMED_STEPS)
-# The activities of the agenda, first those about nothing in particular.
-WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look", "suppose")
-ACTIVITIES: Forms = {
-    **dict.fromkeys(WHOLE_ACTIVITIES, ()),
+ACTIVITIES: Forms = {  # of the agenda, first those about nothing in particular
+    **dict.fromkeys(("release", "keep", "agree", "errand", "settle", "go", "wish", "look", "suppose"), ()),
     **dict.fromkeys(("blame", "clash", "doubt", *SETTLING_STEPS), (SUBJECT_ARGUMENT,)),
     "resume": (BEGUN_ARGUMENT,),
 }
@@ -104,12 +101,11 @@ DOUBTS: Forms = {  # what steps rest on
     "frame": (),
 }
 DOUBT_ARGUMENT = compound_argument("doubt", "doubts", DOUBTS)
-REFLEXES = ("draw_back", "let_go", "regrasp", "take_along", "fetch", "lead_out", "detour")
-REFLEX_ARGUMENT = word_argument("reflex", REFLEXES)
-ATTEMPTS = (  # what may be done for a thing that a goal is about
-    *("examine", "leave_open", "press", "believe", "carry", "carry_on", "carry_near", "settle_for", "carry_loosely"),
-    *("probe", "search"),
-)
+REFLEX_NAMES = ("draw_back", "let_go", "regrasp", "take_along", "fetch", "lead_out", "detour")
+REFLEX_ARGUMENT = word_argument("reflex", REFLEX_NAMES)
+# What may be done for a thing that a goal is about.
+WAYS_TO_CARRY = ("carry", "carry_on", "carry_near", "carry_loosely")
+ATTEMPTS = ("examine", "leave_open", "press", "believe", *WAYS_TO_CARRY, "settle_for", "probe", "search")
 ATTEMPT_ARGUMENT = word_argument("attempt", ATTEMPTS)
 CHOSEN = {
     "do": ACTIVITY_ARGUMENT,
@@ -132,7 +128,6 @@ COMPOUND_FORMS: Mapping[str, Forms] = {
 }
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 OUTCOME = {("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT), ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT)}
-VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "region": ((("region", 3), 0),),
@@ -269,7 +264,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("connects", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         **{(name, 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT) for name in ("width", "relief")},
         ("door", 2): (PLAN_DOOR_ARGUMENT, CONFIDENCE_ARGUMENT),
-        **{(name, 2): MEANING_ARGUMENTS for name in ("bound", "may_mean", "meant_before", "meaning")},
+        **{(name, 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT) for name in ("bound", "may_mean", "meant_before", "meaning")},
         ("about", 2): (GOAL_ARGUMENT, PARAMETER_ARGUMENT),
         ("order", 2): (PARAMETER_ARGUMENT, AMOUNT_ARGUMENT),
         ("not_meant", 2): (MOVER_ARGUMENT, GOAL_ARGUMENT),
@@ -314,23 +309,22 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
         ("planned", 1): (STEP_ARGUMENT,),
         **OUTCOME,
-        ("do", 1): (ACTIVITY_ARGUMENT,),
+        **{(name, 1): (argument,) for name, argument in CHOSEN.items()},
         ("kept", 1): (compound_argument("choice", "choices", KEPT_CHOICES),),
         ("open_fact", 3): (OPEN_FACT_ARGUMENT, OPEN_KIND_ARGUMENT, AMOUNT_ARGUMENT),
         **{(name, 1): (OPEN_FACT_ARGUMENT,) for name in ("plan_with", "suppose", "depends")},
         ("refutes", 1): (ANSWER_ARGUMENT,),
         ("left_out", 2): (ANSWER_ARGUMENT, OPEN_FACT_ARGUMENT),
-        ("verdict", 1): (VERDICT_ARGUMENT,),
+        ("verdict", 1): (word_argument("verdict", ("done", "limit", "impossible", "possible_if")),),
         ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
         ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
-        ("in_vain", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
         ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
-        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "choose", "walked")},
+        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "walked")},
         ("goes_to", 2): (NUMBER_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("in_room", 2): (LINK_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("point", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("beside", 2): (NUMBER_ARGUMENT, NODE_ARGUMENT),
-        ("aim_price", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
+        **{(name, 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT) for name in ("in_vain", "aim_price")},
         ("halt", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
         ("tells", 4): (NUMBER_ARGUMENT, *WALL_ARGUMENTS, AMOUNT_ARGUMENT),
         **{(name, 3): (*WALL_ARGUMENTS, THOUSANDTHS_ARGUMENT) for name in ("counted_wall", "supposed")},
@@ -349,7 +343,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
         ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
         ("unsure", 2): (DOUBT_ARGUMENT, NUMBER_ARGUMENT),
-        **{(name, 1): (DOUBT_ARGUMENT,) for name in ("telling", "needed", "sense")},
+        **{(name, 1): (DOUBT_ARGUMENT,) for name in ("telling", "needed")},
         **{
             (name, 1): (NODE_ARGUMENT,)
             for names in (
@@ -363,27 +357,13 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT) for name in ("commands", "resists", "contacts", "misses")},
         ("looked", 2): (DOUBT_ARGUMENT, AMOUNT_ARGUMENT),
         ("reflex", 2): (REFLEX_ARGUMENT, NODE_ARGUMENT),
-        ("react", 1): (REFLEX_ARGUMENT,),
         ("attempt", 2): (ATTEMPT_ARGUMENT, NODE_ARGUMENT),
         ("comes", 2): (ATTEMPT_ARGUMENT, AMOUNT_ARGUMENT),
-        ("bring", 1): (ATTEMPT_ARGUMENT,),
-        ("vain", 1): (word_argument("choice", (*REFLEXES, *ATTEMPTS)),),
+        ("vain", 1): (word_argument("choice", (*REFLEX_NAMES, *ATTEMPTS)),),
     },
 }
 # Encodings that answer questions and decide nothing in a run.
 ASKED_ENCODINGS = frozenset({"alternatives"})
-# Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
-PLAN_FACTS = frozenset(
-    [
-        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
-        "connects", "relief", "size", "begins", "done", "lay", "any_way", "untouched",
-        "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
-        "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
-        "robot_in", "room_before", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
-        "default_price", "acts", "waits", "infeasible", "measurable", "narrow", "holds", "left", "shaken",
-        "settling", "settled", "missing", "unclear", "came_to", "stuck",
-    ]
-)  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "movable": frozenset({("moved", 1), ("kind", 3)}),
@@ -391,9 +371,11 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "chances": frozenset(USER_RULE_INTERFACES["chances"]) - {("supports", 3)},
     "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
-    "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)}),
+    # Rules add goals, conditions and prices; the planner alone states the rest of the task plan.
+    "task": frozenset(USER_RULE_INTERFACES["task"])
+    - {("goal", 1), ("wish", 2), ("met", 1), ("moved", 2), ("settles", 2), ("price", 2)},
     "deciding": frozenset(USER_RULE_INTERFACES["deciding"])
-    - {("aim_price", 2), ("avoid_link", 1), ("link_price", 2), ("supposed", 3), ("needed", 1)},
+    - {("aim_price", 2), ("avoid_link", 1), ("link_price", 2), ("supposed", 3), ("needed", 1), ("see_first", 1)},
 }
 # What chances.lp makes of a decision that was made: queries and possible worlds alone know it.
 MADE_LAST = frozenset(
@@ -418,5 +400,4 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("unmoved", 2), ("resisted", 3), ("room_on", 2), ("untried", 2), ("tried", 2), ("described", 2), ("place", 3),
         ("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
     }
-    | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
 )  # fmt: skip

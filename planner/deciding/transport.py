@@ -73,7 +73,7 @@ class Transporter:
         doing = _Bringing(self, goal, node, land, turn)
         attempts: Mapping[str, Callable[[StageTurn], Decision]] = {
             "examine": doing.examine,
-            "leave_open": partial(_leave_open, lost or land.missing),
+            "leave_open": partial(_leave_open, lost or land.missing or f"{node.name} is not pressed against the walls"),
             "press": doing.press,
             "believe": doing.believe,
             "carry": doing.carry,
@@ -150,7 +150,7 @@ class Transporter:
 
 
 class _Bringing:
-    """What may be done in one decision to bring an object to where a goal holds, and why geometry refused it last."""
+    """Works out what may be done in one decision for an object and a goal, and notes why geometry refused it last."""
 
     def __init__(self, by: Transporter, goal: Fact, node: Node, land: Placement, turn: StageTurn) -> None:
         """Make one of which nothing was tried."""

@@ -18,6 +18,7 @@ CASES = {
     "02_trust_long_ways": ("push_l_tight_door", WAY, False),
     "03_way_first": ("push_brick_regrasp", WAY, True),
     "05_walk_alone": ("push_brick_through_door", "o1 is fetched", False),
+    "06_see_the_end_first": ("push_square_and_back", "the floor goes on", True),
 }
 REFLEX = "04_not_drawn_back"  # tests/planner/deciding/test_taking.py tries it
 
