@@ -3,11 +3,13 @@
 python -m benchmarks.certificates --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --rooms --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --doors --count 100 --seed 0 --mutants 20
+python -m benchmarks.certificates --pushes --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --noise 0.05 --risk 1 --count 100 --seed 0 --mutants 20
 python -m benchmarks.certificates --impossible --count 4 --seed 0 -o FILE
 
 Random walks claim that a goal is done; with --rooms, walks along all walls of a room claim that nothing gets out;
-with --doors, walks and pushes through doors, and through what looks like one, claim to have led into the next room.
+with --doors, walks and pushes through doors, and through what looks like one, claim to have led into the next room;
+with --pushes, things that are pushed claim to be in a corner.
 Each that a certificate is found for is held against the truth, and so are mutants of the certificate that are
 accepted. Where none is found one is forged, for a checker that takes any goal to hold, and is held, with mutants of
 it, against the checker as it is. Whether the rules allow what really happened is asked of all. With --noise the share
@@ -29,7 +31,7 @@ from unittest.mock import patch
 import numpy as np
 
 from benchmarks.certificates.doors import drawn_doors
-from benchmarks.certificates.drawn import drawn_walk
+from benchmarks.certificates.drawn import drawn_push, drawn_walk
 from benchmarks.certificates.gaps import drawn_room, gets_out, meets_corners
 from benchmarks.certificates.mutants import mutants
 from benchmarks.certificates.recorded import RecordedWalk
@@ -53,6 +55,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--rooms", action="store_true", help="rooms that nothing gets out of, in place of goals done")
     parser.add_argument("--doors", action="store_true", help="goals of the next room, in place of others")
+    parser.add_argument("--pushes", action="store_true", help="goals of things in corners, in place of others")
     parser.add_argument("--truth-alone", action="store_true", help="only whether the rules allow what happened")
     parser.add_argument("--noise", type=float, default=0.0, help="of the motions")
     parser.add_argument("--risk", type=float, default=USUAL_RISK, help="of the certificates, percent")
@@ -65,7 +68,8 @@ def main() -> int:
     counts: Counter[str] = Counter()
     times: dict[str, list[float]] = {"found in": [], "checked in": [], "kilobytes": []}
     for seed in range(options.seed, options.seed + options.count):
-        walk = (drawn_room if options.rooms else drawn_doors if options.doors else drawn_walk)(seed, options.noise)
+        kinds = {drawn_room: options.rooms, drawn_doors: options.doors, drawn_push: options.pushes, drawn_walk: True}
+        walk = next(draw for draw, is_asked in kinds.items() if is_asked)(seed, options.noise)
         risk = int(options.risk * MILLION / 100)
         counts["noise is beyond the risk"] += walk.is_beyond(risk)
         if lost := lost_truth(walk, risk):

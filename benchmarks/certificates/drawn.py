@@ -32,6 +32,14 @@ def drawn_walk(seed: int, noise: float = 0.0) -> RecordedWalk:
     return recorded_walk(world, commands, [goal], parameters=("x", "y"), noise=(noise, seed))
 
 
+def drawn_push(seed: int, noise: float = 0.0) -> RecordedWalk:
+    """Return a walk in a random world that pushes a thing into a corner, or seems to."""
+    random = np.random.default_rng([31, seed])
+    world = _beside_thing(random, _world(random))
+    commands, goal = _pushing(random, world)
+    return recorded_walk(world, commands, [goal], parameters=("x", "y"), noise=(noise, seed))
+
+
 def _near_grid(random: np.random.Generator, low: float, high: float) -> float:
     """Return a random number: whole, half, or any."""
     value = float(random.uniform(low, high))
@@ -95,6 +103,26 @@ def _cornered(random: np.random.Generator, world: World) -> Walk:
     commands = _commands(world, points[int(random.integers(2)) :], random)
     nudges = [Move(e * float(random.choice([0, 0.5, 1, 2])), 0.0), Move(0.0, n * float(random.choice([0, 0.5, 1, 2])))]
     return [*commands, *nudges], f"at(utak,corner({name}))"
+
+
+def _pushing(random: np.random.Generator, world: World) -> Walk:
+    """Return pushes towards a corner, most often until the thing is stopped, and perhaps a second grasp."""
+    corner = str(random.choice(["northeast", "northwest", "southwest", "southeast"]))
+    east, north = (1 if "east" in corner else -1), (1 if "north" in corner else -1)
+    ways = _graspable(world) or list(TOUCH_NAMES)
+    commands: list[Command] = []
+    for _ in range(int(random.integers(1, 3))):
+        far = [_near_grid(random, 0, 12), _near_grid(random, 0, 12)]
+        parts = [(east * far[0], 0.0), (0.0, north * far[1])]
+        parts += [(east * _near_grid(random, 0, 2), north * _near_grid(random, 0, 2))]
+        way = str(random.choice(ways))
+        commands += [Grasp(way), *(Push(*parts[k]) for k in random.permutation(len(parts)))]
+        if random.random() < 0.5:
+            away = [float(random.choice([-1, 0, 1])) for _ in range(2)]
+            commands += [Release(), Move(*away), Move(-away[0], -away[1])]
+        else:
+            commands += [Release()]
+    return commands[: len(commands) - int(random.integers(3))], f"at(x,corner({corner}))"
 
 
 def _circling(random: np.random.Generator, world: World) -> Walk:

@@ -10,14 +10,17 @@ import shapely
 
 from benchmarks.certificates.recorded import SLACK, RecordedWalk
 from utak.geometry.counts.retina import FIELDS
-from utak.simulator.certificates.checker import OWN_NAME, goal_of
-from utak.simulator.certificates.courses import RefusedError, waking_case
+from utak.simulator.certificates.checker import OF_COLOURS, OWN_NAME, goal_of
+from utak.simulator.certificates.courses import TOUCH_NAMES, Course, Evidence, RefusedError, Spots, waking_case
 from utak.simulator.certificates.search import settle_all
 from utak.simulator.world.table import Table, project
 
 
 def is_given(walk: RecordedWalk, given: Sequence[str], cases: Sequence[Sequence[Any]] = ()) -> bool:
     """Return whether what is given is so; that verge lies nowhere within floor is so in all drawn worlds."""
+    colours = [thing.colour for thing in walk.world.movable]
+    if "single(colours)" in given and len(set(colours)) < len(colours):
+        return False
     if "parted(rooms)" in given and not walk.rooms.are_parted:
         return False
     outlines = [walk.world.verge, *walk.things[0].values()]
@@ -119,6 +122,7 @@ def lost_truth(walk: RecordedWalk, risk: int = 0) -> str:
     risk : in millionths, with noise.
     """
     evidence = walk.evidence(risk)
+    evidence.allow(evidence.risk, is_given(walk, OF_COLOURS))
     tables = [Table(walk.world.moved(things, walk.places[0])) for things in walk.things]
     quarters, angle = divmod(walk.world.heading, 90)
 
@@ -165,12 +169,27 @@ def lost_truth(walk: RecordedWalk, risk: int = 0) -> str:
             within = {true_square(one) for one in case.held[step]}
             if thing is not None and not _covered(walk, thing, step) <= within:
                 return f"step {step}: what is held lies elsewhere"
+            for felt in itertools.product(range(step + 1), range(len(TOUCH_NAMES))):
+                if name := walk.felt(*felt):
+                    truly, (_, lies) = _covered(walk, name, step), _lies(case, evidence, felt, step)
+                    if not {true_square(at) for at in case.covered(evidence, felt, step)} <= truly:
+                        return f"step {step}: what was felt at {felt} does not cover this"
+                    if lies and not truly <= {true_square(at) for at in lies}:
+                        return f"step {step}: what was felt at {felt} lies elsewhere"
             if not replays:
                 again = case.replayed(evidence)
                 if again is None:
                     return f"step {step}: it cannot have ended there, played again"
                 case = again._replace(occupied=dict(again.occupied))
     return ""
+
+
+def _lies(case: Course, evidence: Evidence, felt: tuple[int, int], step: int) -> tuple[Spots, Spots]:
+    """Return where a thing began and lies, as the rules say; nothing where they refuse."""
+    try:
+        return case.extent(evidence, felt, step)
+    except RefusedError:
+        return Spots(), Spots()
 
 
 def _is_at_corner(walk: RecordedWalk, name: str, step: int, thing: str | None) -> bool:

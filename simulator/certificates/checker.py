@@ -19,6 +19,7 @@ OTHER_GOALS = {"at start": "start", "at ": "near", "beside ": "near", "circled "
 GOAL_KINDS = {"done": BARRED_GOALS | OTHER_GOALS, "impossible": BARRED_GOALS}
 OF_DOORS = ["verge(walls)", "isolated(things)", "parted(rooms)"]  # given, of `done` of such a goal
 OF_WALLS, OF_THINGS = ["whole(squares)", "isolated(things)"], ["apart(things)"]  # given, of `impossible`
+OF_COLOURS = ["single(colours)"]  # given, of `done` of a thing, perhaps: no two things are of one colour
 ALONG_GRID = "along(grid)"  # given: the robot's axes lie along the squares, so only the angle 0 is treated
 RIGHT_ANGLE = 90  # degrees: a quarter turn of the grid of squares is the same grid
 CORNERS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
@@ -31,7 +32,7 @@ def goal_of(text: str, claim: str) -> Shown:
     order, word, what, corner, name = (GOAL.fullmatch(text) or refuse(f"nothing is shown of {text}")).groups()
     place = "corner()" if corner else name if name in ("start", "corner", "room(next)") else ""
     kind = GOAL_KINDS[claim].get(f"{word} {place}")
-    if not kind or (claim == "done" and kind in ("corner", "circled") and what != OWN_NAME):
+    if not kind or (kind == "circled" and what != OWN_NAME):
         refuse(f"nothing is shown of {text}")
     is_named = kind in ("near", "circled") or (claim == "done" and word == "through")
     return kind, what, corner or (name if is_named else ""), order or ""
@@ -97,7 +98,9 @@ class CertificateCheck:
             refuse("its steps are not in the order of the task, or a goal does not hold at the end")
         self.has_door = self.claim == "done" and any(goal[0] == "room" for goal in self.goals)
         taken, walls = self.check_meaning() + OF_DOORS * self.has_door, OF_WALLS + OF_THINGS * bool(self.meaning)
-        granted = [taken, taken + walls] if self.claim == "impossible" else [taken]
+        is_carried = any(goal[1] != OWN_NAME for goal in self.goals)
+        more = walls if self.claim == "impossible" else OF_COLOURS * is_carried
+        granted = [taken, taken + more]
         if self.given not in [one + grid for one in granted for grid in ([], [ALONG_GRID])]:
             refuse(f"what it is given must be {granted[-1]}, and perhaps {ALONG_GRID}")
         self.has_cases = any(goal[:2] != ("near", OWN_NAME) for goal in self.goals)
@@ -106,7 +109,7 @@ class CertificateCheck:
         risks = range(1, courses.MILLION) if self.has_cases and episode.noise else range(1)
         if type(self.risk) is not int or self.risk not in risks:
             refuse(f"its risk must be {risks[0]} to {risks[-1]} millionths")
-        episode.allow(self.risk)
+        episode.allow(self.risk, OF_COLOURS[0] in self.given)
 
     def check_meaning(self) -> list[str]:
         """Return the claims of the task about things that are taken to be so; refuse unless each thing was felt."""
@@ -192,7 +195,7 @@ class CertificateCheck:
         if kind == "near":
             pairs = product(covered, case.covered(self.episode, self.meaning[name], step))
             return any(max(abs(i - a), abs(j - b)) <= 1 for (i, j), (a, b) in pairs)
-        return (0, 0) in covered if kind == "start" else self.is_corner(name, case, step)
+        return (0, 0) in covered if kind == "start" else self.is_corner(what, name, case, step)
 
     def is_next(self, what: str, case: Course, step: int, frames: list[list[int]]) -> bool:
         """Return whether what began in one of two rectangles of floor that a door joins lies in the other."""
@@ -212,21 +215,32 @@ class CertificateCheck:
         is_led = began and lies and any(began <= one and lies <= other for one, other in (rooms, rooms[::-1]))
         return bool(is_joined and fits and is_floor and is_led and len(walled) > walled.count(False) < 2 * (n - s + 1))
 
-    def is_corner(self, name: str, case: Course, step: int) -> bool:
-        """Return whether the robot is in the corner square of the known floor that is furthest towards a corner."""
-        u, v = towards = courses.turned(*CORNERS[name], case.angle)  # map frame
-        i, j = here = case.squares[step]
-        ahead = (i + (1 if u > 0 else -1), j), (i, j + (1 if v > 0 else -1))
-        is_shut = all(case.at(at, step) and at not in case.held[step] for at in ahead)
-        if not (u and v and is_shut and case.was_free(here)):
+    def is_corner(self, what: str, name: str, case: Course, step: int) -> bool:
+        """Return whether what the robot or a thing covers ends in the corner of the known floor that is furthest."""
+        towards, felt = courses.turned(*CORNERS[name], case.angle), self.felt(what)  # map frame
+        (covered, moves), (_, lies) = case.followed(self.episode, felt, step), case.extent(self.episode, felt, step)
+        if not (all(towards) and covered and lies):
             return False
-        for (k, field), (_, most) in self.episode.ranges.items():  # does it show floor further on?
+        a, b = ways = [1 if part > 0 else -1 for part in towards]
+        least, most = ([way * max(way * at[n] for at in lot) for n, way in enumerate(ways)] for lot in (covered, lies))
+        columns, rows = (range(one, two + way, way) for one, two, way in zip(least, most, ways, strict=True))
+        if not 0 < len(columns) * len(rows) <= courses.MAX_SQUARES:
+            return False
+        spots = list(product(columns, rows))
+        backs = {0, 1} if felt else {0}  # the last row or column that a thing covers may be one of the wall, too
+        ahead = {at for i, j in spots for n in backs for at in ((i + a, j - b * n), (i - a * n, j + b))}
+        if not all(case.at(at, step) and (felt or at not in case.held[step]) for at in ahead):
+            return False
+        limit = reach(towards, (least[0], least[1]))
+        for (k, field), (_, shown) in self.episode.ranges.items():  # does it show floor further on?
             (p, q), squares = case.squares[min(k, step)], courses.sampled(case.angle)[field][0]
-            further = sum(n for (c, d), n in squares.items() if reach(towards, (p + c, q + d)) > reach(towards, here))
-            if k <= step and further > most:
-                return False
+            further = {(p + c, q + d): n for (c, d), n in squares.items() if reach(towards, (p + c, q + d)) > limit}
+            if k <= step and sum(further.values()) > shown:
+                since = {at: {n for n in case.changes.get(at, ()) if k < n <= step} for at in further}
+                if not all(case.at(at, step) and moves.issuperset(since[at]) for at in further):  # it lies there now
+                    return False
         floor = (at for at in case.squares[: step + 1] if at in case.changes or not case.at(at, 0))  # not within a wall
-        return all(reach(towards, at) <= reach(towards, here) for at in floor)
+        return bool(felt or case.was_free(spots[0])) and all(reach(towards, at) <= limit for at in floor)
 
     def is_circled(self, name: str, case: Course, step: int) -> bool:
         """Return whether the track ends in the square where it began, which is free, and winds about a thing."""

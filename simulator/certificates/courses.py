@@ -116,9 +116,12 @@ class Evidence:
             raise ValueError("its noise is no number from 0 on")
         self.noise = Fraction(noise)
 
-    def allow(self, risk: int) -> None:
-        """Take a risk, in millionths, that noise leads a command further beside its end than is worked out here."""
-        self.risk, self.errors = risk, [0] * len(self.ways)
+    def allow(self, risk: int, is_single: bool = False) -> None:
+        """Take a risk, in millionths, that noise leads a command further beside its end than is worked out here.
+
+        is_single : it is given, besides, that no two things are of one colour.
+        """
+        self.risk, self.errors, self.is_single = risk, [0] * len(self.ways), is_single
         for k, (east, north) in enumerate(self.ways if risk else ()):
             bits = (MILLION * k * (k + 1) // risk).bit_length()  # a chance of 2^-bits is less than this command's part
             way = Fraction(isqrt(int(self.noise**2 * bits * LN_4 * MILLION**2)) + 1, MILLION)  # of a way of 1
@@ -241,6 +244,11 @@ class Course(NamedTuple):
         if episode.touches[step][touch] in (None, VERGE_LETTER):
             return frozenset()
         felt = self.touch(step, touch) or refuse("what was grasped was felt between two squares")
+        for k, row in enumerate(episode.actions[1 : step + 1]):  # what was grasped before is as wide as it was
+            one = (k, TOUCH_NAMES.index(row["direction"])) if row["do"] == "grasp" else None
+            lies = self.extent(episode, one, step)[1] if one and felt in self.covered(episode, one, step) else None
+            if lies:
+                return spread([felt], lies.__contains__)
         piece = self.unsettled([felt], step)
         return piece if len(piece) <= MAX_SQUARES else refuse(f"nothing bounds the thing felt at step {step}")
 
@@ -295,19 +303,27 @@ class Course(NamedTuple):
 
     def covered(self, episode: Evidence, felt: Spot | None, step: int) -> set[Spot]:
         """Return squares that the thing felt, or without a touch the robot, covers for sure at a step."""
+        return self.followed(episode, felt, step)[0]
+
+    def followed(self, episode: Evidence, felt: Spot | None, step: int) -> tuple[set[Spot], set[int]]:
+        """Return what a thing, or the robot, covers for sure at a step, and the steps so far that moved it alone."""
         if felt is None:
-            return {self.squares[step]}
-        spot, moves, covered = self.touch(*felt), set[int](), set[Spot]()
+            return {self.squares[step]}, set()
+        own = [(felt[0], felt[1])]  # touches of it
+        if episode.is_single:
+            pairs, letter = product(range(step + 1), range(len(TOUCH_NAMES))), episode.touches[felt[0]][felt[1]]
+            own += [(k, n) for k, n in pairs if episode.touches[k][n] == letter]
+        moves, covered = set[int](), set[Spot]()
         for last, end, grasped in [*self.grasps(episode, felt, step), (step + 1, 0, None)]:
-            is_left = spot and felt[0] < last and self.key(spot, felt[0]) == self.key(spot, last - 1)
-            covered = {spot} if spot and is_left else set()
+            spots = [(self.touch(k, n), k) for k, n in own if k < last]
+            covered = {at for at, k in spots if at and self.key(at, k) == self.key(at, last - 1)}
             for square, changes in self.changes.items():  # what was free before covers what alone was moved since
                 since = [0, *(k for k in changes if k < last)]
                 free = [n for n, k in enumerate(since) if self.occupied.get((*square, k)) is False]
                 if free and self.at(square, last - 1) and moves.issuperset(since[free[-1] + 1 :]):
                     covered.add(square)
             moves |= {*range(last + 1, end + 1)} if grasped in covered else set()
-        return covered
+        return covered, moves
 
     def extent(self, episode: Evidence, felt: Spot | None, step: int) -> tuple[Spots, Spots]:
         """Return squares in which all lay of a thing, or the robot, on waking, and lies at a step; () where unknown."""
@@ -319,8 +335,12 @@ class Course(NamedTuple):
         for _, end, spot in self.grasps(episode, felt, step):
             if spot in lies:  # where it covers a square that it did not, it was taken
                 lies = self.held[end] | (Spots() if self.covered(episode, felt, end) - lies else lies)
-        part = self.unsettled(self.covered(episode, felt, step), step)  # a thing is in one piece
+        covered = self.covered(episode, felt, step)
+        part = self.unsettled(covered, step)  # a thing is in one piece
         lies &= part if 0 < len(part) <= MAX_SQUARES else lies
+        for n in (0, 1) if covered else ():  # it is as wide as it was
+            size, numbers = 1 + max(at[n] for at in began) - min(at[n] for at in began), {at[n] for at in covered}
+            lies = Spots(at for at in lies if max(numbers) - size <= at[n] <= min(numbers) + size)
         return began, Spots(at for at in lies if self.at(at, step) is not False)
 
 

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from utak.simulator.certificates.checker import (
     ALONG_GRID,
     GOAL_KINDS,
+    OF_COLOURS,
     OF_DOORS,
     OF_THINGS,
     OF_WALLS,
@@ -128,11 +129,21 @@ def _certificate(episode: Evidence, claim: str) -> dict[str, Any]:
                 tried.add((*checker.texts, *things))
                 certificate["steps"] = _likely_steps(checker, likely, certificate["steps"])
             certificate["cases"] = _Search(episode, CertificateCheck(episode, certificate)).all_lines(certificate)
+            certificate = _with_less_given(episode, certificate)
         except RefusedError as why:
             refusal = why
         else:
             return certificate
     raise refusal
+
+
+def _with_less_given(episode: Evidence, certificate: dict[str, Any]) -> dict[str, Any]:
+    """Return a certificate, without what is given of colours where it shows the same."""
+    less = certificate | {"given": [claim for claim in certificate["given"] if claim not in OF_COLOURS]}
+    with suppress(RefusedError):
+        CertificateCheck(episode, less).check()
+        return less
+    return certificate
 
 
 def _likely_course(episode: Evidence, halts: bool = False) -> Course:
@@ -200,7 +211,7 @@ def _meanings(episode: Evidence, claim: str, steps: list[int | None], goals: lis
     for kind, what, name, _ in goals:
         if what != OWN_NAME:
             touches = _touches(episode, what, "grasp" if claim == "done" else "any")
-            is_led = claim == "done" and kind == "room"
+            is_led = claim == "done" and kind in ("corner", "room")
             felt.setdefault(what, touches[::-1] if is_led else touches)  # of what was led: from where it began
         if kind in ("near", "circled"):
             is_near = kind == "near" and what == OWN_NAME
@@ -216,6 +227,8 @@ def _meanings(episode: Evidence, claim: str, steps: list[int | None], goals: lis
         given = list(dict.fromkeys(taken))
         if claim == "done" and any(goal[0] == "room" for goal in goals):
             given += OF_DOORS
+        if claim == "done" and any(goal[1] != OWN_NAME for goal in goals):
+            given += OF_COLOURS
         if claim == "impossible" and len(goals) == 1:
             given += OF_WALLS + (OF_THINGS if means else [])
         risk = episode.risk if any(goal[:2] != ("near", OWN_NAME) for goal in goals) else 0

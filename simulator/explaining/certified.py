@@ -21,6 +21,7 @@ GRANTED = {
     "isolated(things)": "no verge lies within a closed ring of squares that are floor or things",
     "verge(walls)": "the verge covers all of the squares beside the door",
     "parted(rooms)": "floors on both sides of a door that are at least twice as wide as it are two rooms",
+    "single(colours)": "no two things are of one colour",
     "apart(things)": "where the robot woke, things whose squares share an edge or are the same are one thing",
 }
 CaseLine = Sequence[Any]  # of the cases of a certificate

@@ -95,6 +95,8 @@ const checkCertificate = (() => {
   const both = (of) => AXES.map(of), isEmpty = (box) => box.some(([a, b]) => a > b);
   const floor = (a, unit) => (a >= 0n ? a / unit : -((unit - 1n - a) / unit));
   const keyOf = ([i, j]) => `${i},${j}`;
+  const spanOf = (squares, a) => Math.max(...squares.map((square) => square[a])) - Math.min(...squares.map((square) => square[a])) + 1;
+  const isWithin = (spells, time) => spells.some(([grasp, end]) => grasp < time && time <= end);
 
   // Squares in whose inside a box has a part.
   function squaresUnder(box, unit) {
@@ -198,9 +200,10 @@ const checkCertificate = (() => {
   // ---- cases
 
   class World {
-    // noise: of the run, as a decimal; risk: in millionths, 0 without noise.
-    constructor(episode, noise, risk) {
+    // noise: of the run, as a decimal; risk: in millionths, 0 without noise; isSingle: no two things are of one colour.
+    constructor(episode, noise, risk, isSingle) {
       this.steps = episode.steps;
+      this.isSingle = isSingle;
       const leads = (action) => action && (action.do === "move" || action.do === "push");
       const vectors = episode.steps.map(({ action }) => (leads(action) ? [decimal(action.east), decimal(action.north)] : [[0n, 0], [0n, 0]]));
       const places = Math.max(...vectors.flat().map(([, count]) => count)); // of all commands: one unit for all
@@ -252,6 +255,14 @@ const checkCertificate = (() => {
       if ([null, "b"].includes(this.steps[k].touch[t])) return [];
       const first = this.touched(one, [k, t]);
       need(first, "it is not sure which square was touched");
+      for (let g = 1; g <= k; g += 1) { // what was grasped before is as wide as it was
+        const { action } = this.steps[g];
+        if (action.do !== "grasp") continue;
+        const touch = [g - 1, DIRECTIONS.indexOf(action.direction)];
+        if (!this.covered(one, touch, k).some((square) => same(square, first))) continue;
+        const { lies } = this.extent(one, touch, k), within = new Set(lies.map(keyOf));
+        if (lies.length) return [...this.spread([first], (square) => within.has(keyOf(square))).values()];
+      }
       const found = this.unsettled(one, [first], k);
       need(found.length <= MAX_SQUARES, "what was touched may reach too far");
       return found;
@@ -401,19 +412,29 @@ const checkCertificate = (() => {
       return found;
     }
 
-    // Squares that the thing of a touch covers at a step for sure.
-    covered(one, touch, step) {
+    // Squares that the thing of a touch, or else the robot, covers at a step for sure.
+    covered(one, touch, step) { return this.followed(one, touch, step).covered; }
+    // The same, with its spells.
+    followed(one, touch, step) {
+      if (!touch) return { covered: [one.squares[step]], spells: [] };
       const spells = [];
       for (const { grasp, end, square } of this.grasps(one, touch[0], step)) {
         if (square && this.coveredBy(one, touch, grasp - 1, spells).some((other) => same(other, square))) spells.push([grasp, end]);
       }
-      return this.coveredBy(one, touch, step, spells);
+      return { covered: this.coveredBy(one, touch, step, spells), spells };
     }
 
     // The same, by the spells of the thing.
     coveredBy(one, [k, t], step, spells) {
-      const square = this.touched(one, [k, t]), found = new Map(), inSpells = (time) => spells.some(([grasp, end]) => grasp < time && time <= end);
-      if (square && k <= step && !this.times(one, square, step).some((time) => time > k)) found.set(keyOf(square), square);
+      const found = new Map(), inSpells = (time) => isWithin(spells, time), touches = [[k, t]];
+      if (this.isSingle) {
+        const colour = this.steps[k].touch[t];
+        for (let g = 0; g <= step; g += 1) this.steps[g].touch.forEach((other, n) => { if (other === colour) touches.push([g, n]); });
+      }
+      for (const [g, n] of touches) {
+        const square = g <= step ? this.touched(one, [g, n]) : null;
+        if (square && !this.times(one, square, step).some((time) => time > g)) found.set(keyOf(square), square);
+      }
       for (const key of one.changes.keys()) {
         const other = key.split(",").map(Number), times = this.times(one, other, step);
         const free = times.findLastIndex((time) => one.settled.get(`${key},${time}`) === false);
@@ -433,8 +454,9 @@ const checkCertificate = (() => {
         const isTaken = this.covered(one, touch, end).some((other) => !lies.has(keyOf(other)));
         lies = new Map([...(isTaken ? [] : lies), ...one.held[end].map((other) => [keyOf(other), other])]);
       }
-      const part = this.unsettled(one, this.covered(one, touch, step), step), inPart = new Set(part.map(keyOf)), isBounded = part.length > 0 && part.length <= MAX_SQUARES;
-      return { began, lies: [...lies.values()].filter((square) => this.at(one, square, step) !== false && (!isBounded || inPart.has(keyOf(square)))) };
+      const covered = this.covered(one, touch, step), part = this.unsettled(one, covered, step), inPart = new Set(part.map(keyOf)), isBounded = part.length > 0 && part.length <= MAX_SQUARES;
+      const isNear = (square) => covered.every((other) => AXES.every((a) => Math.abs(square[a] - other[a]) <= spanOf(began, a))); // it is no wider than it was
+      return { began, lies: [...lies.values()].filter((square) => this.at(one, square, step) !== false && (!isBounded || inPart.has(keyOf(square))) && isNear(square)) };
     }
 
     // Whether all of the thing of a touch, or of the robot, began in one of the rooms of a door and is in the other.
@@ -465,18 +487,33 @@ const checkCertificate = (() => {
       });
     }
 
-    atCorner(one, step, [a, b]) {
+    // Whether what the thing of a touch, or the robot, covers ends in the corner.
+    atCorner(one, step, [a, b], touch) {
       const { c, s } = turned(one.degrees), u = BigInt(a) * c - BigInt(b) * s, v = BigInt(a) * s + BigInt(b) * c;
-      if (u === 0n || v === 0n) return false;
-      const reach = ([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n)), square = one.squares[step], limit = reach(square);
-      const held = new Set(one.held[step].map(keyOf)), ahead = [from(square, [u > 0n ? 1 : -1, 0]), from(square, [0, v > 0n ? 1 : -1])];
-      if (!this.wasFree(one, square) || !ahead.every((other) => this.at(one, other, step) && !held.has(keyOf(other)))) return false;
+      const { covered, spells } = this.followed(one, touch, step), { lies } = this.extent(one, touch, step);
+      if (u === 0n || v === 0n || !covered.length || !lies.length) return false;
+      const reach = ([i, j]) => u * BigInt(i + (u > 0n)) + v * BigInt(j + (v > 0n)), signs = [u > 0n ? 1 : -1, v > 0n ? 1 : -1];
+      const furthest = (squares) => both((x) => signs[x] * squares.map((square) => signs[x] * square[x]).reduce(most)); // column and row
+      const [first, last] = [furthest(covered), furthest(lies)], limit = reach(first), counts = both((x) => signs[x] * (last[x] - first[x]) + 1);
+      if (counts.some((count) => count < 1) || counts[0] * counts[1] > MAX_SQUARES) return false;
+      const held = new Set(touch ? [] : one.held[step].map(keyOf)), isOccupied = (square) => this.at(one, square, step) === true;
+      for (let i = 0; i < counts[0]; i += 1) {
+        for (let j = 0; j < counts[1]; j += 1) {
+          const end = from(first, [signs[0] * i, signs[1] * j]), ahead = [from(end, [signs[0], 0]), from(end, [0, signs[1]])];
+          if (touch) ahead.push(from(end, [signs[0], -signs[1]]), from(end, [-signs[0], signs[1]])); // its last row or column may be wall, too
+          if (!ahead.every((square) => isOccupied(square) && !held.has(keyOf(square)))) return false;
+        }
+      }
+      if (!touch && !this.wasFree(one, first)) return false;
       const isWall = (other) => !one.changes.has(keyOf(other)) && this.at(one, other, 0);
-      return one.squares.slice(0, step + 1).every((passed, k) => (reach(passed) <= limit || isWall(passed)) && turned(one.degrees).fields.every((samples, f) => {
-        if (f === OWN) return true;
-        const further = samples.filter((sample) => sample !== null && reach(from(passed, sample)) > limit).length;
-        return further <= countsOf(this.steps[k].retina[f], samples.length)[1];
-      }));
+      return one.squares.slice(0, step + 1).every((passed, k) => {
+        const isFilled = (square) => isOccupied(square) && this.times(one, square, step).every((time) => time <= k || isWithin(spells, time));
+        return (reach(passed) <= limit || isWall(passed)) && turned(one.degrees).fields.every((samples, f) => {
+          if (f === OWN) return true;
+          const further = samples.filter((sample) => sample !== null).map((sample) => from(passed, sample)).filter((square) => reach(square) > limit);
+          return further.length <= countsOf(this.steps[k].retina[f], samples.length)[1] || further.every(isFilled);
+        });
+      });
     }
 
     circled(one, step, touch) {
@@ -567,6 +604,7 @@ const checkCertificate = (() => {
 
   // ---- goals
 
+  const SINGLE = "single(colours)"; // no two things are of one colour: of goals of things that are done, where it is needed
   // What a goal asks for: { word, kind, what, of }; kind is null where certificates show nothing of it.
   function goalOf(text) {
     const [, word, goal] = /^(first|then|prefer)\((.*)\)$/.exec(text) || [null, "", text];
@@ -610,8 +648,8 @@ const checkCertificate = (() => {
   }
 
   // The goals that are shown, each with its step; refused where they are not those of the claim.
-  function checkDone({ steps, meaning }, episode, goals) {
-    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), isUnknown = ({ kind, what }) => kind === null || (["corner", "circled"].includes(kind) && what !== "utak"), unknown = shown.find(isUnknown);
+  function checkDone({ steps, meaning, given: stated }, episode, goals) {
+    const last = episode.steps.length - 1, shown = goals.filter(({ word }) => word !== "prefer"), isUnknown = ({ kind, what }) => kind === null || (kind === "circled" && what !== "utak"), unknown = shown.find(isUnknown);
     need(shown.length > 0, "there is no goal to be shown");
     need(!unknown, `certificates show nothing of ${unknown && unknown.text}`);
     need(Array.isArray(steps) && steps.length === shown.length, "there is not one step for each goal");
@@ -629,6 +667,7 @@ const checkCertificate = (() => {
       for (const fact of claimsOf(episode.header.task, [[door, null]])) if (!given.includes(fact)) given.push(fact);
     }
     if (rooms.length) given.push("verge(walls)", "isolated(things)", "parted(rooms)");
+    if (shown.some(({ what }) => what !== "utak") && Array.isArray(stated) && stated.includes(SINGLE)) given.push(SINGLE);
     for (const { kind, of, step, text } of shown) need(kind !== "felt" || meaning[of][0] === step, `${text} is not felt at its step`);
     return { given, shown };
   }
@@ -652,7 +691,7 @@ const checkCertificate = (() => {
     const covered = (name) => world.covered(one, meaning[name], step);
     if (kind === "start") return (what === "utak" ? [one.squares[step]] : covered(what)).some((square) => same(square, [0, 0]));
     if (kind === "near") return covered(what).some(([i, j]) => covered(of).some(([x, y]) => Math.abs(x - i) <= 1 && Math.abs(y - j) <= 1));
-    return kind === "felt" || (kind === "corner" ? world.atCorner(one, step, CORNERS[of]) : world.circled(one, step, meaning[of]));
+    return kind === "felt" || (kind === "corner" ? world.atCorner(one, step, CORNERS[of], meaning[what]) : world.circled(one, step, meaning[of]));
   }
 
   // Reads the lines of cases; returns the cases that show the goals.
@@ -715,7 +754,7 @@ const checkCertificate = (() => {
     need(Number.isInteger(risk) && (isRisky ? risk > 0 && risk < 1e6 : risk === 0), isRisky ? "with noise there is a risk, in millionths" : "there is no risk to be taken");
     let shown = [];
     if (!simple) {
-      const why = foreign(episode), steps = claim === "done" ? episode.steps : episode.steps.slice(0, wanted.shown[0].step + 1), world = new World({ steps }, noise, risk);
+      const why = foreign(episode), steps = claim === "done" ? episode.steps : episode.steps.slice(0, wanted.shown[0].step + 1), world = new World({ steps }, noise, risk, given.includes(SINGLE));
       need(why === null, why);
       const hasDoor = wanted.shown.some(({ kind }) => kind === "room");
       const isDone = (one, door) => (door.length > 0) === hasDoor && wanted.shown.every((goal) => shows(world, one, goal, meaning, door));

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from utak.kb.evidence.reason import ReasonKind
-from utak.simulator.certificates.checker import ALONG_GRID, OF_DOORS, OF_THINGS, OF_WALLS
+from utak.simulator.certificates.checker import ALONG_GRID, OF_COLOURS, OF_DOORS, OF_THINGS, OF_WALLS
 from utak.simulator.cli.main import main
 from utak.simulator.episode.episode import read_episode
 from utak.simulator.explaining.certified import GRANTED
@@ -89,4 +89,4 @@ def test_commands_and_pages_tell_it(
 
 
 def test_all_that_certificates_take_for_granted_besides_the_task_has_words() -> None:
-    assert set(GRANTED) == {ALONG_GRID, *OF_DOORS, *OF_WALLS, *OF_THINGS}
+    assert set(GRANTED) == {ALONG_GRID, *OF_COLOURS, *OF_DOORS, *OF_WALLS, *OF_THINGS}
