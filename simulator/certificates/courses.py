@@ -23,6 +23,7 @@ SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}
 LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
 for k, n in [(1, n) for n in range(2)] + [(2, n) for n in range(5)] + [(4, n) for n in range(17)]:
     LEVEL_RANGES.setdefault((k, (14 * n + k * k) // (2 * k * k)), [n, n])[1] = n
+COMMANDS = ("move", "push", "turn", "grasp", "release")
 TOUCH_NAMES = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
 TOUCH_OFFSETS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # (east, north), in this order
 VERGE_LETTER = "b"  # the colour of what bounds the floor
@@ -98,12 +99,14 @@ class Evidence:
             raise ValueError("it is no episode of version 1")
         self.goals, self.kinds = head["task"]["goals"], head["task"]["parameters"]
         self.claims = [str(fact) for fact, _ in head["task"]["claims"]]
-        steps = [row for row in rows if "result" not in row]
+        steps = rows[:-1] if rows and "result" in rows[-1] else rows
         self.actions, self.touches = [row["action"] for row in steps], [row["touch"] for row in steps]
         fields = product(range(len(steps)), SAMPLED_FIELDS)
         self.ranges = {(k, f): LEVEL_RANGES[FIELD_OFFSETS[f][2], steps[k]["retina"][f]] for k, f in fields}
         self.last = len(steps) - 1
-        if [row["step"] for row in steps] != list(range(len(steps))) or {*map(len, self.touches)} != {len(TOUCH_NAMES)}:
+        is_told = all(row["do"] in COMMANDS if k else row is None for k, row in enumerate(self.actions))
+        numbers = [None if "result" in row else row["step"] for row in steps] == list(range(len(steps)))
+        if not (steps and numbers and is_told and {*map(len, self.touches)} == {len(TOUCH_NAMES)}):
             raise ValueError("its steps are not whole")
         ways = [[Fraction((row or {}).get(part, 0)) for part in ("east", "north")] for row in self.actions]
         parts = 2 * PLACE_PARTS * lcm(*(number.denominator for way in ways for number in way))
@@ -244,12 +247,12 @@ class Course(NamedTuple):
         if episode.touches[step][touch] in (None, VERGE_LETTER):
             return frozenset()
         felt = self.touch(step, touch) or refuse("what was grasped was felt between two squares")
+        within = Spots()
         for k, row in enumerate(episode.actions[1 : step + 1]):  # what was grasped before is as wide as it was
-            one = (k, TOUCH_NAMES.index(row["direction"])) if row["do"] == "grasp" else None
-            lies = self.extent(episode, one, step)[1] if one and felt in self.covered(episode, one, step) else None
-            if lies:
-                return spread([felt], lies.__contains__)
-        piece = self.unsettled([felt], step)
+            one = (k, TOUCH_NAMES.index(row["direction"])) if row["do"] == "grasp" and not within else None
+            if one and felt in self.covered(episode, one, step):
+                within = self.extent(episode, one, step)[1]
+        piece = spread([felt], within.__contains__) if within else self.unsettled([felt], step)
         return piece if len(piece) <= MAX_SQUARES else refuse(f"nothing bounds the thing felt at step {step}")
 
     def unsettled(self, squares: Iterable[Spot], step: int) -> Spots:

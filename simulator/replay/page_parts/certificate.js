@@ -255,15 +255,16 @@ const checkCertificate = (() => {
       if ([null, "b"].includes(this.steps[k].touch[t])) return [];
       const first = this.touched(one, [k, t]);
       need(first, "it is not sure which square was touched");
-      for (let g = 1; g <= k; g += 1) { // what was grasped before is as wide as it was
+      let within = null;
+      for (let g = 1; g <= k && !within; g += 1) { // what was grasped before is as wide as it was
         const { action } = this.steps[g];
         if (action.do !== "grasp") continue;
         const touch = [g - 1, DIRECTIONS.indexOf(action.direction)];
         if (!this.covered(one, touch, k).some((square) => same(square, first))) continue;
-        const { lies } = this.extent(one, touch, k), within = new Set(lies.map(keyOf));
-        if (lies.length) return [...this.spread([first], (square) => within.has(keyOf(square))).values()];
+        const { lies } = this.extent(one, touch, k);
+        within = lies.length ? new Set(lies.map(keyOf)) : null;
       }
-      const found = this.unsettled(one, [first], k);
+      const found = within ? [...this.spread([first], (square) => within.has(keyOf(square))).values()] : this.unsettled(one, [first], k);
       need(found.length <= MAX_SQUARES, "what was touched may reach too far");
       return found;
     }

@@ -164,3 +164,23 @@ def test_numbers_are_read_as_they_are_written(tmp_path: Path) -> None:
     assert accepted_by_both(tmp_path, found.text, texts) == 1
     assert accepted_by_both(tmp_path, found.text.replace('"east": 1.0', '"east": 100e-2'), texts) == 1
     assert accepted_by_both(tmp_path, found.text.replace('"east": 1.0', '"east": 0.3'), texts) == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "change"),
+    [(1, {"result": {}}), (2, {"action": {"do": "fly"}}), (2, {"action": None}), (2, {"step": 2})],
+)
+def test_both_refuse_an_episode_that_is_none(tmp_path: Path, line: int, change: dict[str, Any]) -> None:
+    found, stated = in_corner(tmp_path)
+    rows = found.text.splitlines(keepends=True)
+    rows[line] = json.dumps(json.loads(rows[line]) | change) + "\n"
+    assert accepted_by_both(tmp_path, "".join(rows), [json.dumps(stated)]) == 0
+    assert accepted_by_both(tmp_path, found.text + '{"result": {}}\n', [json.dumps(stated)]) == 1
+
+
+def test_an_unknown_command_counts_also_after_what_is_shown(tmp_path: Path) -> None:
+    found = walk(tmp_path, L_ROOM, [], "at(utak,corner(northeast))", "at(utak,corner(southwest))")
+    text = found_certificate(found, "impossible")
+    step = json.loads(found.text.splitlines()[1]) | {"step": 1, "action": {"do": "fly"}}
+    assert accepted_by_both(tmp_path, found.text, [text]) == 1
+    assert accepted_by_both(tmp_path, found.text + json.dumps(step) + "\n", [text]) == 0
