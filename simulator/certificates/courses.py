@@ -23,7 +23,7 @@ SAMPLED_FIELDS = {*range(len(FIELD_OFFSETS))} - {FIELD_OFFSETS.index((0, 0, 1))}
 LEVEL_RANGES: dict[tuple[int, int], list[int]] = {}  # (side, gray level): least and greatest count of occupied squares
 for k, n in [(1, n) for n in range(2)] + [(2, n) for n in range(5)] + [(4, n) for n in range(17)]:
     LEVEL_RANGES.setdefault((k, (14 * n + k * k) // (2 * k * k)), [n, n])[1] = n
-COMMANDS = ("move", "push", "turn", "grasp", "release")
+COMMAND_WORDS = ("move", "push", "turn", "grasp", "release")
 TOUCH_NAMES = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
 TOUCH_OFFSETS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # (east, north), in this order
 VERGE_LETTER = "b"  # the colour of what bounds the floor
@@ -104,7 +104,7 @@ class Evidence:
         fields = product(range(len(steps)), SAMPLED_FIELDS)
         self.ranges = {(k, f): LEVEL_RANGES[FIELD_OFFSETS[f][2], steps[k]["retina"][f]] for k, f in fields}
         self.last = len(steps) - 1
-        is_told = all(row["do"] in COMMANDS if k else row is None for k, row in enumerate(self.actions))
+        is_told = all(row["do"] in COMMAND_WORDS if k else row is None for k, row in enumerate(self.actions))
         numbers = [None if "result" in row else row["step"] for row in steps] == list(range(len(steps)))
         if not (steps and numbers and is_told and {*map(len, self.touches)} == {len(TOUCH_NAMES)}):
             raise ValueError("its steps are not whole")
