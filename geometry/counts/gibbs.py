@@ -77,13 +77,14 @@ class _Raster(NamedTuple):
     # north-west, 4 south-east, 8 south-west
     shown_corners: NDArray[np.int32]
     around: NDArray[np.int64]  # (8,) int64, flat steps to the neighbours, in the order of NEIGHBOUR_STEPS
+    near: NDArray[np.int32]  # (n, 8) int32, which of them the neighbours of each square are; n for one that is none
     # (n + 1,), (entries,) and (entries,) int32: the fields of square k are field[ends[k]:ends[k + 1]], and how often
     # each counts it
     ends: NDArray[np.int32]
     field: NDArray[np.int32]
     share: NDArray[np.int32]
     where: NDArray[np.int32]  # (fields, m) int32, flat indices of the squares of each field, in the framed raster
-    used: NDArray[np.bool_]  # (fields, m) bool, those of them that are drawn
+    members: NDArray[np.int32]  # (fields, m) int32, which of the n squares these are; negative for one that is none
     limits: NDArray[np.int32]  # (fields, 2) int32, the least and the greatest count
 
 
@@ -98,10 +99,10 @@ def pictures(
     )
     images = images_framed.reshape(len(first), -1)
     count = np.ascontiguousarray((images[:, raster.where] * counts.weight).sum(2, dtype=np.int32))
-    neighbours = np.zeros((len(first), len(raster.squares)), np.int32)
+    codes = np.empty((len(first), len(raster.squares) + 1), np.int32)
     flipped = np.zeros(2 * MAX_MOVED_LENGTH + 2, np.int32)
     inverse_temperatures = np.linspace(hot, FINAL_INVERSE_TEMPERATURE, sweeps)
-    sample_all(raster, _flip_costs(), _thresholds(), images, neighbours, count, flipped, inverse_temperatures, seed)
+    sample_all(raster, _flip_costs(), _thresholds(), images, codes, count, flipped, inverse_temperatures, seed)
     return images_framed[:, 1:-1, 1:-1]
 
 
@@ -136,16 +137,19 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
     ends = np.searchsorted(where[field, entry], np.append(squares, len(flat)))
     rank = np.where(flat == UNSEEN_SQUARE, np.int32(RANK_UNSEEN), np.int32(RANK_FIXED))
     rank[squares] = np.arange(len(squares))
+    around = np.array([rows * columns + across for rows, across in NEIGHBOUR_STEPS])
+    near = rank[squares[:, None] + around]
     return _Raster(
         squares,
         rank,
         _shown_corners(flat != UNSEEN_SQUARE, squares, columns),
-        np.array([rows * columns + across for rows, across in NEIGHBOUR_STEPS]),
+        around,
+        np.where(near < 0, np.int32(len(squares)), near),
         ends.astype(np.int32),
         field.astype(np.int32),
         counts.weight[field, entry].astype(np.int32),
         where.astype(np.int32),
-        used,
+        np.where(used, rank[where], np.int32(RANK_FIXED)),
         np.stack([counts.low, counts.high], axis=1).astype(np.int32),
     )
 
@@ -195,7 +199,7 @@ def _thresholds() -> NDArray[np.float64]:
 
 
 @bare
-def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed) -> None:  # type: ignore[no-untyped-def]
+def sample_all(raster, flip_costs, thresholds, images, codes, counts, flipped, inverse_temperatures, seed) -> None:  # type: ignore[no-untyped-def]
     """Change rasters, in place, until they are simple and agree with the counts; nothing is returned."""
     for number in range(images.shape[0]):
         random = seed * (number + 1) % LEHMER_MODULUS
@@ -204,7 +208,7 @@ def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipp
             flip_costs,
             thresholds,
             images[number],
-            neighbours[number],
+            codes[number],
             counts[number],
             flipped,
             inverse_temperatures,
@@ -213,91 +217,88 @@ def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipp
 
 
 @bare
-def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random) -> None:  # type: ignore[no-untyped-def]
+def sample(raster, flip_costs, thresholds, image, codes, counts, flipped, inverse_temperatures, random) -> None:  # type: ignore[no-untyped-def]
     """Change one raster, in place, square by square, in one sweep for each inverse temperature; nothing is returned."""
-    squares, rank, shown_corners, around, ends, field, share, where, used, limits = raster
+    squares, rank, shown_corners, around, near, ends, field, share, _, members, limits = raster
     count_error = 0
     for f in range(limits.shape[0]):
         count_error += max(limits[f, 0] - counts[f], counts[f] - limits[f, 1], 0)
     for k in range(squares.shape[0]):
+        codes[k] = (shown_corners[k] << 9) + image[squares[k]]
         for n in range(8):
-            neighbours[k] |= (image[squares[k] + around[n]] == 1) << n
+            codes[k] |= (image[squares[k] + around[n]] == 1) << (n + 1)
     for sweep in range(inverse_temperatures.shape[0]):
         temperature = 1 / inverse_temperatures[sweep]
         for k in range(squares.shape[0]):
             # flip the square alone
             random = random * LEHMER_MULTIPLIER % LEHMER_MODULUS
-            square, threshold = squares[k], thresholds[random & THRESHOLD_COUNT - 1] * temperature
-            if (
-                flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[square]]
-                <= threshold + COUNT_ERROR_COST * count_error
-            ):
-                more = 1 - 2 * image[square]
+            threshold = thresholds[random & THRESHOLD_COUNT - 1] * temperature
+            cost = flip_costs[codes[k]]
+            if cost <= threshold + COUNT_ERROR_COST * count_error:
+                more = 1 - 2 * (codes[k] & 1)
                 worse = count_error_change(k, more, ends, field, share, limits, counts)
-                if (
-                    flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[square]]
-                    + COUNT_ERROR_COST * worse
-                    <= threshold
-                ):
+                if cost + COUNT_ERROR_COST * worse <= threshold:
                     update_counts(k, more, ends, field, share, counts)
-                    flip(square, rank, around, image, neighbours)
+                    flip(k, near, codes)
+                    image[squares[k]] ^= 1
                     count_error += worse
             # exchange it with another square of the same field
             if ends[k] < ends[k + 1]:
                 f = field[ends[k] + ((random >> 15) * (ends[k + 1] - ends[k]) >> 16)]
                 random = random * LEHMER_MULTIPLIER % LEHMER_MODULUS
-                entry = (random & 65535) * where.shape[1] >> 16
-                if used[f, entry] and image[where[f, entry]] != image[square]:
-                    other = rank[where[f, entry]]
+                other = members[f, (random & 65535) * members.shape[1] >> 16]
+                if other >= 0 and (codes[other] ^ codes[k]) & 1:
                     threshold = thresholds[random >> 17 & THRESHOLD_COUNT - 1] * temperature
                     if (
-                        cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other)
+                        cost_of_two_flips(near, flip_costs, codes, k, other)
                         <= threshold + COUNT_ERROR_COST * count_error
                     ):
                         flipped[0], flipped[1] = k, other
                         count_error += try_flips(
-                            raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, 2
+                            raster, flip_costs, image, codes, counts, count_error, threshold, flipped, 2
                         )
             # move the edge on which it lies
-            if neighbours[k] != 0 and neighbours[k] != 255 and (random >> 27) % EDGE_MOVE_INTERVAL == 0:
+            outline = codes[k] >> 1 & 255
+            if outline != 0 and outline != 255 and (random >> 27) % EDGE_MOVE_INTERVAL == 0:
                 random = random * LEHMER_MULTIPLIER % LEHMER_MODULUS
                 number = collect_edge_move(squares, rank, around, image, k, random, flipped)
                 threshold = thresholds[random >> 12 & THRESHOLD_COUNT - 1] * temperature
                 count_error += try_flips(
-                    raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number
+                    raster, flip_costs, image, codes, counts, count_error, threshold, flipped, number
                 )
 
 
 @bare
-def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other) -> float:  # type: ignore[no-untyped-def]
+def cost_of_two_flips(near, flip_costs, codes, k, other) -> float:  # type: ignore[no-untyped-def]
     """Return the change of the cost, counts left out, when two squares flip; nothing is changed."""
-    other_neighbours = neighbours[other]  # once k is changed
+    code = codes[other]  # once k is changed
     for n in range(8):
-        other_neighbours ^= (squares[k] + around[n] == squares[other]) << (7 - n)
-    cost = flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[squares[k]]]
-    return cost + flip_costs[(shown_corners[other] << 9) + (other_neighbours << 1) + image[squares[other]]]  # type: ignore[no-any-return]
+        code ^= (near[k, n] == other) << (8 - n)
+    return flip_costs[codes[k]] + flip_costs[code]  # type: ignore[no-any-return]
 
 
 @bare
-def try_flips(raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number) -> int:  # type: ignore[no-untyped-def]
+def try_flips(raster, flip_costs, image, codes, counts, count_error, threshold, flipped, number) -> int:  # type: ignore[no-untyped-def]
     """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold."""
-    squares, rank, shown_corners, around, ends, field, share, _, _, limits = raster
+    squares, _, _, _, near, ends, field, share, _, _, limits = raster
     cost, worse = 0.0, 0
     for m in range(number):
-        k = flipped[m]
-        cost += flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[squares[k]]]
-        flip(squares[k], rank, around, image, neighbours)
+        cost += flip_costs[codes[flipped[m]]]
+        flip(flipped[m], near, codes)
     if cost <= threshold + COUNT_ERROR_COST * count_error:
         for m in range(number):
-            k, more = flipped[m], 2 * image[squares[flipped[m]]] - 1
+            k = flipped[m]
+            more = 2 * (codes[k] & 1) - 1
             worse += count_error_change(k, more, ends, field, share, limits, counts)
             update_counts(k, more, ends, field, share, counts)
         if cost + COUNT_ERROR_COST * worse <= threshold:
+            for m in range(number):
+                image[squares[flipped[m]]] ^= 1
             return worse
         for m in range(number):
-            update_counts(flipped[m], 1 - 2 * image[squares[flipped[m]]], ends, field, share, counts)
+            update_counts(flipped[m], 1 - 2 * (codes[flipped[m]] & 1), ends, field, share, counts)
     for m in range(number):
-        flip(squares[flipped[m]], rank, around, image, neighbours)
+        flip(flipped[m], near, codes)
     return 0
 
 
@@ -333,13 +334,11 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped) -> int: 
 
 
 @bare
-def flip(square, rank, around, image, neighbours) -> None:  # type: ignore[no-untyped-def]
-    """Flip a square in the raster and in its neighbours' bits, but not in the counts."""
-    image[square] = 1 - image[square]
+def flip(k, near, codes) -> None:  # type: ignore[no-untyped-def]
+    """Flip a square in its code and in its neighbours' codes, but not in the raster, nor in the counts."""
+    codes[k] ^= 1
     for n in range(8):
-        other = rank[square + around[n]]
-        if other >= 0:
-            neighbours[other] ^= 1 << (7 - n)
+        codes[near[k, n]] ^= 1 << (8 - n)
 
 
 @bare

@@ -43,6 +43,19 @@ class CompletionTask(NamedTuple):
     first: OccupancyImage
     counts: Counts  # The counts of the squares to be drawn alone, with flat indices of the part: row * w + column
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether the same is given of a scene, wherever it lies."""
+        return isinstance(other, CompletionTask) and self._given == other._given
+
+    def __hash__(self) -> int:
+        """Return a hash of what is given of it."""
+        return hash(self._given)
+
+    @property
+    def _given(self) -> tuple[tuple[int, ...] | bytes, ...]:
+        """Return all that determines its samples but its place and what was drawn before."""
+        return self.ground.shape, *(array.tobytes() for array in (self.ground, self.first, *self.counts))
+
     def told(self, view: MapView) -> SceneKey:
         """Return a key of all that determines its samples, its place included: equal keys mean equal scenes."""
         arrays = (self.ground, *self.counts)

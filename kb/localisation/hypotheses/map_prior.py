@@ -8,6 +8,7 @@ Gibbs sampling (Geman and Geman 1984; geometry.counts.gibbs).
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from utak.kb.localisation.hypotheses.frames import (
     observation_squares,
 )
 from utak.kb.localisation.hypotheses.remap import remap
-from utak.kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, SceneKey, given_squares, scenes
+from utak.kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, given_squares, scenes
 from utak.kb.mapping.occupancy import OccupancyMap
 from utak.kb.perception.frame import Frame
 
@@ -44,22 +45,21 @@ UNTRIED_COST = 12.0  # log odds against frames that are not tried, at least: abo
 MAX_REDRAWS = 2  # times that close maps are drawn once more; tuned
 OBLIQUE_COST = 4.5  # log odds against any one orientation but Utak's own axes; about ln 90, for 90 orientations
 SEEDS_PER_EFFORT = 16  # random seeds reserved for each effort: more than completions in any effort
+MAX_KEPT_SCENES = 512  # scenes whose simplest completions are remembered; a bound on memory
 Effort = tuple[int, int]
-DrawnScenes = dict[SceneKey, tuple[float, OccupancyImage]]
 SquaresKey = tuple[int, bytes]
 
 
 class MapDescription:
     """A map, and the simplest completion of it that was drawn so far, scene by scene."""
 
-    def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None, against: float = 0.0) -> None:
+    def __init__(self, occupancy: OccupancyMap, against: float = 0.0) -> None:
         """Begin with no completion. against : log odds (natural logarithm) against what it is the map of."""
         self._view = occupancy.view()
         self._ground = given_squares(self._view)
         self._scenes = list(scenes(self._view, self._ground))
         self._least = [np.inf] * len(self._scenes)
         self._image = (self._ground == OCCUPIED).astype(np.int8)
-        self._drawn: DrawnScenes = {} if drawn is None else drawn
         self._rounds = 0
         self.price = np.inf
         self.against = against
@@ -67,10 +67,7 @@ class MapDescription:
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
         """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm)."""
         for number, scene in enumerate(self._scenes):
-            key = (*scene.told(self._view), *effort, self._rounds)
-            if key not in self._drawn:
-                self._drawn[key] = _simplest(scene, effort, COMPLETION_SEED + SEEDS_PER_EFFORT * self._rounds)
-            least, image = self._drawn[key]
+            least, image = _simplest(scene, effort, COMPLETION_SEED + SEEDS_PER_EFFORT * self._rounds)
             if least < self._least[number]:
                 self._least[number] = least
                 open_ = scene.ground == DRAWN
@@ -95,6 +92,7 @@ class MapDescription:
         return bends / max(self.price - bends, LOG_ODDS_PER_COST)
 
 
+@lru_cache(maxsize=MAX_KEPT_SCENES)  # maps of several frames, and of several impressions, have scenes in common
 def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, OccupancyImage]:
     """Return the cost of the simplest of some completions of a scene, and that completion."""
     number, sweeps = effort

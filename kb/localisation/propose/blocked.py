@@ -15,7 +15,7 @@ from utak.kb.localisation.hypotheses.carry_outcomes import other_outcomes, parti
 from utak.kb.localisation.hypotheses.contacts import NO_SQUARES
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import Position
-from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from utak.kb.localisation.hypotheses.map_prior import MapDescription, relative_costs
 from utak.kb.localisation.hypotheses.walk_outcomes import (
     blocked_ends,
     entered_square,
@@ -153,7 +153,6 @@ def consistent_explanations(situation: ObservedSituation, explanations: Iterable
     """Return those explanations with which the observation agrees, each with its cost by the map prior."""
     state = situation.state
     found: list[tuple[MapDescription, Explanation]] = []
-    drawn: DrawnScenes = {}
     fitting = (one for one in explanations if not residual_at(situation, one.place, one.outcome))
     for one in islice(fitting, MAX_ENDS):
         held_objects = situation.objects_after(one.outcome)
@@ -162,7 +161,7 @@ def consistent_explanations(situation: ObservedSituation, explanations: Iterable
             state.frame, after, held_objects, one.place, situation.ranges
         ):
             against = -math.log(max(_chance(one), MIN_END_CHANCE))
-            found.append((MapDescription(after, drawn, against), one))
+            found.append((MapDescription(after, against), one))
     costs = relative_costs([description for description, _ in found])
     return [one._replace(residual=0, prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
 

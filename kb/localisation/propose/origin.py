@@ -11,7 +11,7 @@ from functools import cache
 
 from utak.kb.localisation.hypotheses.explanation import Explanation
 from utak.kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
-from utak.kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from utak.kb.localisation.hypotheses.map_prior import MapDescription, relative_costs
 from utak.kb.localisation.hypotheses.reestimation import reestimate_walk
 from utak.kb.localisation.hypotheses.remap import MapReplay, ReplayPrefixes, remap
 from utak.kb.localisation.hypotheses.walk_outcomes import StraightMotion
@@ -47,11 +47,8 @@ def blocked_walks_with_origin(
             alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
     shares = (len(walks) / len(COARSE_ORIGINS) for walks in alike.values())
     against = [OFF_CENTRE_COST * (believed.origin == CENTRE) - math.log(share) for share in shares]
-    drawn = DrawnScenes()
     maps = (remap(one.frame, one.frame, _corrected(one, observations), ()) for one, *_ in alike.values())
-    costs = relative_costs(
-        [MapDescription(one.occupancy, drawn, odds) for one, odds in zip(maps, against, strict=True)]
-    )
+    costs = relative_costs([MapDescription(one.occupancy, odds) for one, odds in zip(maps, against, strict=True)])
     return [
         _likeliest(same)._replace(prior_cost=cost + odds, origin_weighed=True)
         for same, cost, odds in zip(alike.values(), costs, against, strict=True)
