@@ -166,11 +166,9 @@ class _LatticeSearch:
         if not can_reach_end(self.lattice, self.ends, self.place):
             return None
         to_go = cost_to_go(self.lattice, self.ends, bend_cost)
-        count = 36 * len(self.first_costs) * len(self.lattice.solid)
         for weight, max_nodes in SEARCH_STAGES:
-            cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
             nodes = find_carrying_path(
-                self.lattice, to_go, self.ends, self.first_costs, self.place, bend_cost, weight, max_nodes, cost, parent
+                self.lattice, to_go, self.ends, self.first_costs, self.place, bend_cost, weight, max_nodes
             )
             if len(nodes):
                 return LegExtraction(self.query, self.before_nudge, self.body, self.grid, self.ends).legs(nodes)

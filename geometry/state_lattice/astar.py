@@ -3,10 +3,12 @@
 # Strategy: A* over nodes (hold, quarter turn, direction being pushed in, place), with the heuristic module for the cost
 to go. Walking round the body is costly to compute and seldom wanted: letting go is first queued at its least cost, and
 the walk is measured only when that comes to the head of the queue. The floor about a pose is walked once from each
-side. Ties are broken by node number: the same question has the same answer.
+side. Ties are broken by node number: the same question has the same answer. Of millions of nodes a search comes to some
+hundreds, mostly, so they are kept in a hash table with open addressing (Knuth 1973, section 6.4).
 """
 
 import heapq
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +26,18 @@ from utak.geometry.state_lattice.lattice import (
 )
 
 ADMISSIBLE_WEIGHT = 4  # the weight of the heuristic, in quarters, with which A* finds the cheapest path
+FIRST_CAPACITY = 4096  # slots of an empty table of nodes, a power of two; a convention
+HASH_MULTIPLIER, HASH_SHIFT = 2654435769, 16  # multiplicative hashing: 2^32 by the golden ratio (Knuth 1973)
+MOST_SUCCESSORS = 16  # nodes to which one step leads: eight pushes, or pushes on and the end of a push, and four turns
+
+
+class Opened(NamedTuple):
+    """The nodes that a search has come to, in slots by their numbers, at most half of them taken."""
+
+    node: Longs  # (slots,) int64, the node in each slot; -1 for none. There are a power of two of them.
+    cost: Costs  # (slots,) int32, the least cost at which it was come to
+    parent: Longs  # (slots,) int64, the node before it then; -1 for a first grasp
+    number: Longs  # (1,) int64, how many slots are taken
 
 
 @compiled
@@ -36,23 +50,21 @@ def find_carrying_path(
     redirect_cost: int,
     weight: int,
     max_settled: int,
-    cost: Costs,
-    parent: Costs,
 ) -> Longs:
     """Return the nodes of the cheapest path from the first grasp to the goal, in order; empty if there is none."""
     squares, holds = end_costs.shape[1], len(grasp_costs)
-    total = len(cost)
-    # The array `cost` holds one more than the cost, 0 for unknown: fresh zeros from numpy take no memory until written.
-    walked = np.zeros((4 * squares, holds), np.bool_)  # which holds of a pose have been walked to or from
+    total = 36 * holds * squares
+    opened = _new_table(FIRST_CAPACITY)  # `total` is added to nodes that have been walked to or from
     walk_cost, seen = np.empty(holds, np.int32), np.zeros(squares, np.int32)
-    successor, step_cost = np.empty(16, np.int64), np.empty(16, np.int64)
+    successor, step_cost = np.empty(MOST_SUCCESSORS, np.int64), np.empty(MOST_SUCCESSORS, np.int64)
     final, final_cost = -1, COST_UNREACHABLE
     heap = [(0, 0, 0)]
     heap.pop()
+    opened = _with_room(opened, holds)
     for hold in range(holds):
         if grasp_costs[hold] >= 0 and remaining[0, NO_DIRECTION, place] < COST_UNREACHABLE:
             node = (hold * 36 + NO_DIRECTION) * squares + place
-            cost[node], parent[node] = grasp_costs[hold] + 1, -1
+            _come_to(opened, node, grasp_costs[hold], -1)
             heapq.heappush(
                 heap,
                 (
@@ -68,22 +80,22 @@ def find_carrying_path(
             break
         letting_go = node >= total
         node -= total if letting_go else 0
-        spent = cost[node] - 1
+        spent = opened.cost[_slot_of(opened, node)]
         if -minus != spent:
             continue
         settled += 1
+        opened = _with_room(opened, 2 * holds + MOST_SUCCESSORS)
         p, m, k, hold = node % squares, node // squares % 9, node // squares // 9 % 4, node // squares // 36
         if letting_go:
-            if walked[k * squares + p, hold]:
+            if opened.node[_slot_of(opened, node + total)] >= 0:
                 continue
             _write_walk_costs(lattice, hold, k, p, walk_cost, seen, settled)
             for other in range(holds):
                 if walk_cost[other] >= 0:
-                    walked[k * squares + p, other] = True
                     after = ((other * 4 + k) * 9 + NO_DIRECTION) * squares + p
+                    _come_to(opened, after + total, 0, -1)
                     then = spent + REGRASP_COST + walk_cost[other] + lattice.grasp_cost[other]
-                    if cost[after] == 0 or then < cost[after] - 1:
-                        cost[after], parent[after] = then + 1, node
+                    if _come_to(opened, after, then, node):
                         heapq.heappush(
                             heap, (then + remaining[k, NO_DIRECTION, p] * weight // ADMISSIBLE_WEIGHT, -then, after)
                         )
@@ -97,24 +109,65 @@ def find_carrying_path(
         for n in range(count):
             after, then = successor[n], spent + step_cost[n]
             ahead = remaining[after // squares // 9 % 4, after // squares % 9, after % squares]
-            if ahead < COST_UNREACHABLE and (cost[after] == 0 or then < cost[after] - 1):
-                cost[after], parent[after] = then + 1, node
+            if ahead < COST_UNREACHABLE and _come_to(opened, after, then, node):
                 heapq.heappush(heap, (then + ahead * weight // ADMISSIBLE_WEIGHT, -then, after))
-    return _path_to(parent, final)
+    return _path_to(opened, final)
 
 
 @compiled
-def _path_to(parent: Costs, final: int) -> Longs:
+def _new_table(slots: int) -> Opened:
+    """Return a table without nodes."""
+    number = np.zeros(1, np.int64)
+    return Opened(np.full(slots, -1, np.int64), np.empty(slots, np.int32), np.empty(slots, np.int64), number)
+
+
+@compiled
+def _with_room(opened: Opened, more: int) -> Opened:
+    """Return a table of the same nodes in which there is room for some more: the same one where it has room."""
+    slots = len(opened.node)
+    while 2 * (opened.number[0] + more) > slots:
+        slots *= 2
+    if slots == len(opened.node):
+        return opened
+    larger = _new_table(slots)
+    for slot in range(len(opened.node)):
+        if opened.node[slot] >= 0:
+            _come_to(larger, opened.node[slot], opened.cost[slot], opened.parent[slot])
+    return larger
+
+
+@compiled
+def _slot_of(opened: Opened, node: int) -> int:
+    """Return the slot in which a node lies, or would lie."""
+    last = len(opened.node) - 1
+    slot = (node * HASH_MULTIPLIER >> HASH_SHIFT) & last
+    while opened.node[slot] != node and opened.node[slot] >= 0:
+        slot = (slot + 1) & last
+    return slot
+
+
+@compiled
+def _come_to(opened: Opened, node: int, cost: int, parent: int) -> bool:
+    """Note that a search came to a node; return False, and change nothing, where it did at no greater cost before."""
+    slot = _slot_of(opened, node)
+    known = opened.node[slot] >= 0
+    if known and opened.cost[slot] <= cost:
+        return False
+    opened.node[slot], opened.cost[slot], opened.parent[slot] = node, cost, parent
+    opened.number[0] += 0 if known else 1
+    return True
+
+
+@compiled
+def _path_to(opened: Opened, final: int) -> Longs:
     """Return the nodes that lead to `final`, in order, itself the last: (n,) int64; empty if it is -1."""
-    length, node = 0, final
-    while node >= 0:
-        length, node = length + 1, parent[node]
-    nodes = np.empty(length, np.int64)
+    nodes = [final]
+    nodes.pop()
     node = final
-    for n in range(length - 1, -1, -1):
-        nodes[n] = node
-        node = parent[node]
-    return nodes
+    while node >= 0:
+        nodes.append(node)
+        node = opened.parent[_slot_of(opened, node)]
+    return np.array(nodes[::-1], np.int64)
 
 
 @compiled
