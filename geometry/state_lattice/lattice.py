@@ -30,10 +30,19 @@ class OffsetLists(NamedTuple):
     first: Longs  # (lists + 1,) int64
 
 
+class Runs(NamedTuple):
+    """Lists of offsets as runs of consecutive ones: list n is the runs from first[n] on, up to first[n + 1]."""
+
+    start: Longs  # (k,) int64, the first offset of each run
+    after: Longs  # (k,) int64, the offset after its last one
+    first: Longs  # (lists + 1,) int64
+
+
 class StateLattice(NamedTuple):
     """All that the search asks of table and body, in arrays for numba. Offsets are differences of square numbers."""
 
     solid: Bools  # (squares,) bool, whether a square stops the body
+    solid_before: Costs  # (squares + 1,) int32, how many squares of lesser numbers are solid
     walkable: Bools  # (squares,) bool, whether the robot may walk there while the body is not in its way
     holds: Longs  # (4, n) by quarter turn, the offset of each hold from the body's place
     grasp_cost: Costs  # (n,) cost of a grasp at each hold; -1 where the hold is not to be used
@@ -45,8 +54,8 @@ class StateLattice(NamedTuple):
     covered: OffsetLists  # by quarter turn, offsets of the squares of the body from its place
     # By hold * 4 + quarter turn, offsets of the squares that the body meets in a turn counter-clockwise about the hold,
     # from its place before the turn
-    turns: OffsetLists
-    wide: OffsetLists  # the same for the body with its margin
+    turns: Runs
+    wide: Runs  # the same for the body with its margin
     push_allowed: Bools  # (4, n, 8) bool, whether the robot may push in a direction from a hold
     steps: Longs  # (8,) the offset of each direction
     turn_price: int  # cost of a turn where there is room for it
@@ -107,12 +116,12 @@ class LatticeBody(NamedTuple):
     grid: Grid  # the numbering of squares
     holds: Longs  # as in StateLattice
     covered: OffsetLists
-    turns: OffsetLists
-    wide: OffsetLists
+    turns: Runs
+    wide: Runs
     lying: tuple[Longs, ...]  # by quarter turn, the squares that the body covers, from its place: four (m,) arrays
     # The squares met by a push of one square, without and with the margin, list number quarter turn * 8 + direction
-    pushes: OffsetLists
-    wide_pushes: OffsetLists
+    pushes: Runs
+    wide_pushes: Runs
     has_margin: bool  # whether there is a margin
 
 
@@ -131,6 +140,7 @@ class LatticeFloor(NamedTuple):
     """The poses and pushes of a body among some squares, and the steps of the robot: as in StateLattice."""
 
     solid: Bools  # as in StateLattice
+    solid_before: Costs
     lies: Bools
     push_cost: Costs
     robot_can_step: Bools
@@ -142,9 +152,10 @@ def new_lattice_floor(free: Bools, body: LatticeBody) -> LatticeFloor:
     solid, table_squares = grid.padded(~free, True), grid.table_squares()
     lies = np.array([grid.clear(solid, lying) for lying in body.lying])
     steps = grid.offsets(np.array(PUSH_DIRECTIONS))
-    push_cost = _push_costs(solid, table_squares, lies, steps, body.pushes, body.wide_pushes, body.has_margin)
+    before = np.append(0, np.cumsum(solid)).astype(np.int32)
+    push_cost = _push_costs(before, table_squares, lies, steps, body.pushes, body.wide_pushes, body.has_margin)
     can_step = [grid.clear(solid, grid.offsets(_squares_of_robot_step(*way))) for way in PUSH_DIRECTIONS]
-    return LatticeFloor(solid, lies, push_cost, np.array(can_step))
+    return LatticeFloor(solid, before, lies, push_cost, np.array(can_step))
 
 
 def new_state_lattice(
@@ -159,6 +170,7 @@ def new_state_lattice(
     grid = body.grid
     return StateLattice(
         floor.solid,
+        floor.solid_before,
         grid.padded(walkable, False),
         body.holds,
         grasp_cost,
@@ -174,14 +186,14 @@ def new_state_lattice(
     )
 
 
-def _push_footprints(grid: Grid, body: Footprints) -> OffsetLists:
+def _push_footprints(grid: Grid, body: Footprints) -> Runs:
     """Return the squares met by a push of one square, list number quarter turn * 8 + direction."""
-    return _joined([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
+    return _runs([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
 
 
-def _turn_footprints(grid: Grid, body: Footprints) -> OffsetLists:
+def _turn_footprints(grid: Grid, body: Footprints) -> Runs:
     """Return the squares met by a quarter turn counter-clockwise, list number hold * 4 + quarter turn before it."""
-    return _joined([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
+    return _runs([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
 
 def _squares_of_robot_step(dx: int, dy: int) -> Longs:
@@ -195,18 +207,27 @@ def _joined(lists: list[Longs]) -> OffsetLists:
     return OffsetLists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
 
+def _runs(lists: list[Longs]) -> Runs:
+    """Return lists of offsets as runs."""
+    ordered = [np.unique(each) for each in lists]
+    gaps = [np.flatnonzero(np.diff(each) > 1) + 1 for each in ordered]
+    start = _joined([each[np.append(0, gap)] for each, gap in zip(ordered, gaps, strict=True)])
+    last = _joined([each[np.append(gap - 1, -1)] for each, gap in zip(ordered, gaps, strict=True)])
+    return Runs(start.items, last.items + 1, start.first)
+
+
 @compiled
 def _push_costs(
-    solid: Bools,
+    solid_before: Costs,
     table_squares: Longs,
     lies: Bools,
     steps: Longs,
-    body: OffsetLists,
-    wide: OffsetLists,
+    body: Runs,
+    wide: Runs,
     with_margin: bool,
 ) -> Costs:
     """Return StateLattice.push_cost: (4, 8, squares) int32, the cost of a push by one square; 0 where it is blocked."""
-    push_cost = np.zeros((4, 8, len(solid)), np.int32)
+    push_cost = np.zeros((4, 8, len(solid_before) - 1), np.int32)
     for k in range(4):
         for place in table_squares:
             if not lies[k, place]:
@@ -214,8 +235,8 @@ def _push_costs(
             for d in range(8):
                 if not lies[k, place + steps[d]]:
                     continue
-                if d % 2 == 0 or _is_clear(solid, body, k * 8 + d, place):
-                    tight = with_margin and not _is_clear(solid, wide, k * 8 + d, place)
+                if d % 2 == 0 or _is_clear(solid_before, body, k * 8 + d, place):
+                    tight = with_margin and not _is_clear(solid_before, wide, k * 8 + d, place)
                     push_cost[k, d, place] = (PUSH_SIDE_COST if d % 2 == 0 else PUSH_DIAGONAL_COST) + (
                         TIGHT_PUSH_COST if tight else 0
                     )
@@ -237,15 +258,15 @@ def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quart
     if not lattice.lies[quarters, place]:
         return -1
     which = hold * 4 + quarters
-    if not _is_clear(lattice.solid, lattice.turns, which, place):
+    if not _is_clear(lattice.solid_before, lattice.turns, which, place):
         return -1
-    return 0 if _is_clear(lattice.solid, lattice.wide, which, place) else TIGHT_TURN_COST
+    return 0 if _is_clear(lattice.solid_before, lattice.wide, which, place) else TIGHT_TURN_COST
 
 
 @compiled
-def _is_clear(solid: Bools, lists: OffsetLists, which: int, place: int) -> bool:
+def _is_clear(solid_before: Costs, lists: Runs, which: int, place: int) -> bool:
     """Return whether none of the offsets in list number `which`, seen from a place, is solid."""
-    for n in range(lists.first[which], lists.first[which + 1]):  # noqa: SIM110 (numba)
-        if solid[place + lists.items[n]]:
+    for n in range(lists.first[which], lists.first[which + 1]):
+        if solid_before[place + lists.after[n]] != solid_before[place + lists.start[n]]:
             return False
     return True
