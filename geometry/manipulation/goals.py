@@ -165,12 +165,10 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
 def _costs_inside(parts: Sequence[Bools], offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
     """Return the costs of one quarter turn: higher where the body has less than a free square about it."""
     cost = np.full(len(lattice.solid), -1, np.int32)
-    grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
+    own = grid.offsets(offsets)
+    grown = np.unique([own, *(own + step for step in grid.offsets(np.array(PUSH_DIRECTIONS)))])
     for outside in parts:
-        inside, easy = (
-            grid.clear(outside, grid.offsets(offsets)),
-            grid.clear(outside & ~lattice.solid, grid.offsets(grown)),
-        )
+        inside, easy = grid.clear(outside, own), grid.clear(outside & ~lattice.solid, grown)
         cost[inside & (cost != 0)] = TIGHT_END_COST
         cost[inside & easy] = 0
     return cost
@@ -179,8 +177,8 @@ def _costs_inside(parts: Sequence[Bools], offsets: npt.NDArray[np.int64], lattic
 def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
     """Return the costs of one quarter turn where all squares within two of the body's are free; -1 elsewhere."""
     reach = range(-2, 3)
-    grown = np.unique(np.vstack([offsets + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
-    roomy = grid.clear(lattice.solid, grid.offsets(grown))
+    grown = np.unique([grid.offsets(offsets + np.array((dx, dy))) for dx in reach for dy in reach])
+    roomy = grid.clear(lattice.solid, grown)
     if goal.near is None:
         return np.where(roomy, 0, -1).astype(np.int32)
     row, column = np.divmod(np.arange(len(roomy)), grid.stride)
