@@ -16,6 +16,7 @@ from utak.geometry.state_lattice.lattice import (
     new_lattice_floor,
     new_lattice_grid,
     new_state_lattice,
+    turn_cost,
 )
 
 SHAPES = [box(0, 0, 1, 1), box(0, 0, 4, 2), shapely.Polygon([(0, 0), (4, 0), (4, 1), (1, 1), (1, 3), (0, 3)])]
@@ -74,3 +75,16 @@ def test_a_push_is_free_where_all_the_squares_that_it_meets_are(shape: shapely.P
         for d in range(len(PUSH_DIRECTIONS)):
             met = body.steps[d] + np.array([column + 20, row + 20])
             assert (lattice.push_cost[0, d, place] > 0) == padded[met[:, 1], met[:, 0]].all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.sampled_from(SHAPES), floors())
+def test_a_turn_is_free_where_all_the_squares_that_it_meets_are(shape: shapely.Polygon, free: np.ndarray) -> None:
+    lattice, table = lattice_of(shape, free)
+    body, columns = new_footprints(near_origin(shape)), free.shape[1]
+    padded = np.pad(free, 20)
+    for number, place in enumerate(table.tolist()):
+        row, column = divmod(number, columns)
+        for hold, turn in enumerate(body.turns):
+            met = np.vstack([turn, body.lying]) + np.array([column + 20, row + 20])
+            assert (turn_cost(lattice, hold, 0, place, 1) == 0) == padded[met[:, 1], met[:, 0]].all()

@@ -8,6 +8,7 @@ import pytest
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from tests.kb.eyes import impression, random_room, world_of
 from utak.geometry.counts.gibbs import CORNER_COST
+from utak.kb.localisation.hypotheses import map_prior
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
     CENTRED_HYPOTHESES,
@@ -147,3 +148,11 @@ def test_an_observation_at_a_wrong_place_raises_the_cost_of_the_map() -> None:
     costs = relative_costs(maps)
     assert costs[0] == 0.0
     assert min(costs[1:]) > 2
+
+
+def test_a_scene_that_was_drawn_is_drawn_no_second_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    map_prior._simplest.cache_clear()
+    first = MapDescription(looked(LARGE_ROOM, LOOKS))
+    price = first.draw()
+    monkeypatch.setattr(map_prior, "pictures", lambda *_: pytest.fail("drawn once more"))
+    assert MapDescription(looked(LARGE_ROOM, LOOKS)).draw() == price
