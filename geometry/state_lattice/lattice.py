@@ -30,7 +30,7 @@ class OffsetLists(NamedTuple):
     first: Longs  # (lists + 1,) int64
 
 
-class Runs(NamedTuple):
+class OffsetRuns(NamedTuple):
     """Lists of offsets as runs of consecutive ones: list n is the runs from first[n] on, up to first[n + 1]."""
 
     start: Longs  # (k,) int64, the first offset of each run
@@ -54,8 +54,8 @@ class StateLattice(NamedTuple):
     covered: OffsetLists  # by quarter turn, offsets of the squares of the body from its place
     # By hold * 4 + quarter turn, offsets of the squares that the body meets in a turn counter-clockwise about the hold,
     # from its place before the turn
-    turns: Runs
-    wide: Runs  # the same for the body with its margin
+    turns: OffsetRuns
+    wide: OffsetRuns  # the same for the body with its margin
     push_allowed: Bools  # (4, n, 8) bool, whether the robot may push in a direction from a hold
     steps: Longs  # (8,) the offset of each direction
     turn_price: int  # cost of a turn where there is room for it
@@ -116,12 +116,12 @@ class LatticeBody(NamedTuple):
     grid: Grid  # the numbering of squares
     holds: Longs  # as in StateLattice
     covered: OffsetLists
-    turns: Runs
-    wide: Runs
+    turns: OffsetRuns
+    wide: OffsetRuns
     lying: tuple[Longs, ...]  # by quarter turn, the squares that the body covers, from its place: four (m,) arrays
     # The squares met by a push of one square, without and with the margin, list number quarter turn * 8 + direction
-    pushes: Runs
-    wide_pushes: Runs
+    pushes: OffsetRuns
+    wide_pushes: OffsetRuns
     has_margin: bool  # whether there is a margin
 
 
@@ -186,14 +186,14 @@ def new_state_lattice(
     )
 
 
-def _push_footprints(grid: Grid, body: Footprints) -> Runs:
+def _push_footprints(grid: Grid, body: Footprints) -> OffsetRuns:
     """Return the squares met by a push of one square, list number quarter turn * 8 + direction."""
-    return _runs([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
+    return _offset_runs([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
 
 
-def _turn_footprints(grid: Grid, body: Footprints) -> Runs:
+def _turn_footprints(grid: Grid, body: Footprints) -> OffsetRuns:
     """Return the squares met by a quarter turn counter-clockwise, list number hold * 4 + quarter turn before it."""
-    return _runs([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
+    return _offset_runs([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
 
 def _squares_of_robot_step(dx: int, dy: int) -> Longs:
@@ -207,13 +207,13 @@ def _joined(lists: list[Longs]) -> OffsetLists:
     return OffsetLists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
 
-def _runs(lists: list[Longs]) -> Runs:
+def _offset_runs(lists: list[Longs]) -> OffsetRuns:
     """Return lists of offsets as runs."""
     ordered = [np.unique(each) for each in lists]
     gaps = [np.flatnonzero(np.diff(each) > 1) + 1 for each in ordered]
     start = _joined([each[np.append(0, gap)] for each, gap in zip(ordered, gaps, strict=True)])
     last = _joined([each[np.append(gap - 1, -1)] for each, gap in zip(ordered, gaps, strict=True)])
-    return Runs(start.items, last.items + 1, start.first)
+    return OffsetRuns(start.items, last.items + 1, start.first)
 
 
 @compiled
@@ -222,8 +222,8 @@ def _push_costs(
     table_squares: Longs,
     lies: Bools,
     steps: Longs,
-    body: Runs,
-    wide: Runs,
+    body: OffsetRuns,
+    wide: OffsetRuns,
     with_margin: bool,
 ) -> Costs:
     """Return StateLattice.push_cost: (4, 8, squares) int32, the cost of a push by one square; 0 where it is blocked."""
@@ -264,7 +264,7 @@ def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quart
 
 
 @compiled
-def _is_clear(solid_before: Costs, lists: Runs, which: int, place: int) -> bool:
+def _is_clear(solid_before: Costs, lists: OffsetRuns, which: int, place: int) -> bool:
     """Return whether none of the offsets in list number `which`, seen from a place, is solid."""
     for n in range(lists.first[which], lists.first[which + 1]):
         if solid_before[place + lists.after[n]] != solid_before[place + lists.start[n]]:

@@ -8,7 +8,6 @@ import pytest
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from tests.kb.eyes import impression, random_room, world_of
 from utak.geometry.counts.gibbs import CORNER_COST
-from utak.kb.localisation.hypotheses import map_prior
 from utak.kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
     CENTRED_HYPOTHESES,
@@ -23,6 +22,7 @@ from utak.kb.localisation.hypotheses.map_prior import (
     REWEIGHED_ANGLES,
     UNTRIED_COST,
     MapDescription,
+    _simplest,
     relative_costs,
     weigh_hypotheses,
 )
@@ -150,9 +150,8 @@ def test_an_observation_at_a_wrong_place_raises_the_cost_of_the_map() -> None:
     assert min(costs[1:]) > 2
 
 
-def test_a_scene_that_was_drawn_is_drawn_no_second_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    map_prior._simplest.cache_clear()
-    first = MapDescription(looked(LARGE_ROOM, LOOKS))
-    price = first.draw()
-    monkeypatch.setattr(map_prior, "pictures", lambda *_: pytest.fail("drawn once more"))
+def test_a_scene_that_was_drawn_is_drawn_no_second_time() -> None:
+    price = MapDescription(looked(LARGE_ROOM, LOOKS)).draw()
+    drawn = _simplest.cache_info().misses
     assert MapDescription(looked(LARGE_ROOM, LOOKS)).draw() == price
+    assert _simplest.cache_info().misses == drawn
