@@ -38,8 +38,6 @@ from utak.planner.situation import Situation
 from utak.planner.skills.press import Presser
 from utak.planner.stages import Stage
 
-UNKNOWN_PLACEMENT = Placement({}, "its outline is not known")  # of what has no outline
-
 
 class Transporter:
     """Brings objects where goals hold, and remembers where they began and what the robot looked at for that."""
@@ -65,7 +63,7 @@ class Transporter:
 
     def _bring(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
         """Return the same for an object that was found, as planner/asp/deciding/bring.lp chooses."""
-        land, lost = UNKNOWN_PLACEMENT, ""
+        land, lost = Placement({}, f"the outline of {node.name} is not known"), ""
         if node.polygon is not None:
             land, lost = self._land(goal, node, turn), self._origins.lost(goal, node, turn.situation)
         if end in land.ends:
