@@ -364,6 +364,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 }
 # Encodings that answer questions and decide nothing in a run.
 ASKED_ENCODINGS = frozenset({"alternatives"})
+NAMED_IN_TASK = frozenset({("shape", 3), ("colour", 3), ("width", 2), ("door", 2), ("bound", 2)})  # of the world model
+RULED_IN_TASK = frozenset({("goal", 1), ("wish", 2), ("met", 1), ("moved", 2), ("settles", 2), ("price", 2)})
 # By the name of an encoding: predicates that users' rules may read there, but not derive.
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "movable": frozenset({("moved", 1), ("kind", 3)}),
@@ -371,9 +373,7 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "chances": frozenset(USER_RULE_INTERFACES["chances"]) - {("supports", 3)},
     "persistence": frozenset(USER_RULE_INTERFACES["persistence"])
     - {("persists", 2), ("watched", 1), ("looked_at_again", 1)},
-    # Rules add goals, conditions and prices; the planner alone states the rest of the task plan.
-    "task": frozenset(USER_RULE_INTERFACES["task"])
-    - {("goal", 1), ("wish", 2), ("met", 1), ("moved", 2), ("settles", 2), ("price", 2)},
+    "task": NAMED_IN_TASK,
     "deciding": frozenset(USER_RULE_INTERFACES["deciding"])
     - {("aim_price", 2), ("avoid_link", 1), ("link_price", 2), ("supposed", 3), ("needed", 1), ("see_first", 1)},
 }
@@ -400,4 +400,5 @@ READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
         ("unmoved", 2), ("resisted", 3), ("room_on", 2), ("untried", 2), ("tried", 2), ("described", 2), ("place", 3),
         ("counted_solid", 4), ("counted_object", 6), ("counted_first", 7), ("counted_other", 3), ("counted_none", 3),
     }
+    | (frozenset(USER_RULE_INTERFACES["task"]) - NAMED_IN_TASK - RULED_IN_TASK)  # which the planner alone states
 )  # fmt: skip

@@ -23,6 +23,7 @@ from utak.planner.cycle import Options, Robot
 from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.verification import Verifier
+from utak.planner.question import Question
 from utak.planner.screen.projection import CostMaps
 from utak.planner.sights.walls import unfelt_walls
 from utak.planner.situation import Situation
@@ -47,7 +48,9 @@ BESIDE_A_THING = [  # a room, and Utak right beside the only object in it
 
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:
     """Return the situation of a world model, with its rooms and corners. bound : what the task's parameters mean."""
-    return Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)
+    situation = Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)
+    held = () if model.held is None else (f"holds({model.held})",)  # as the agenda tells it
+    return replace(situation, question=Question(facts=held))
 
 
 def known_situation(rows: list[str], moved: bool = False, movable: int = 50, held: str | None = None) -> Situation:

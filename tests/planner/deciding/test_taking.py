@@ -27,7 +27,6 @@ from utak.planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import TaskVerdict
 from utak.planner.goals.placement import Placement
-from utak.planner.question import Question
 from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
@@ -325,7 +324,7 @@ def test_a_rule_tells_what_is_done_with_an_object_that_was_stopped(ruled: bool) 
     situation = situation_of(replace(model, objects=(node,), held=node.name))
     executor = PlanExecutor()
     executor.depart(Act(Push(3.0, 0.0), "so", Translate(3.0, 0.0)))
-    question = Question(rules=(NOT_DRAWN_BACK,) if ruled else ())
+    question = situation.question._replace(rules=(NOT_DRAWN_BACK,) if ruled else ())
     reaction = executor._react(None, replace(situation, question=question), False)
     assert isinstance(reaction, Act)
     assert isinstance(reaction.command, Release if ruled else Push)
