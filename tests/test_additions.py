@@ -192,7 +192,7 @@ default_price(rest(S), C) :- settles(rest(S), S), C = 1.
             '    "find": "what {} is about is looked for",\n',
             '    "rest": "the robot rests, for {}",\n',
         ),
-        ("kb/language/vocabulary.py", '"make_way", "try", "feel", "gauge")', '"rest", '),
+        ("kb/language/vocabulary.py", '"make_way", "try", "feel", "measure", "gauge")', '"rest", '),
         (activities, '            "find": self._towards_first', '            "rest": self._rest,\n'),
         (activities, '            "feel": (clearer', '            "rest": (self._is_resting, self._rest_on),\n'),
         (activities, "    def holds(self, situation", method),

@@ -63,15 +63,22 @@ class Transporter:
 
     def _bring(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
         """Return the same for an object that was found, as planner/asp/deciding/bring.lp chooses."""
-        land, lost = Placement({}, f"the outline of {node.name} is not known"), ""
-        if node.polygon is not None:
+        name, is_known = node.name, node.polygon is not None
+        pressed = is_known and self.presser.is_pressed(goal, node, turn.situation)
+        given = {"to_bring": True, "formless": not is_known, "pressed": pressed}
+        facts = [f"{fact}({name})" for fact, is_so in given.items() if is_so]
+        examine = {"examine": partial(_examine, node)}
+        if looked := turn.first_of("bring", "bring", facts, examine):  # before it is noted where it lay at first
+            return looked
+        land, lost = Placement({}, f"the outline of {name} is not known"), ""
+        if is_known:
             land, lost = self._land(goal, node, turn), self._origins.lost(goal, node, turn.situation)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
         doing = _Bringing(self, goal, node, land, turn)
         attempts: Mapping[str, Callable[[StageTurn], Decision]] = {
-            "examine": doing.examine,
-            "leave_open": partial(_leave_open, lost or land.missing or f"{node.name} is not pressed against the walls"),
+            **examine,
+            "leave_open": partial(_leave_open, lost or land.missing or f"{name} is not pressed against the walls"),
             "press": doing.press,
             "believe": doing.believe,
             "carry": doing.carry,
@@ -82,8 +89,8 @@ class Transporter:
             "probe": doing.probe,
             "search": doing.seek,
         }
-        facts = [*doing.facts(turn), *[f"origin_lost({node.name})"] * bool(lost)]
-        why = f"{turn.stage} is not attained as far as is known: users' rules forbid what may be done with {node.name}"
+        facts += [*doing.facts(turn), *[f"origin_lost({name})"] * bool(lost), *["vain(examine)"] * (not pressed)]
+        why = f"{turn.stage} is not attained as far as is known: users' rules forbid what may be done with {name}"
         return turn.first_of("bring", "bring", facts, attempts) or Decision(None, why, TaskVerdict.LIMIT)
 
     def may_bring(self, goal: Fact, turn: StageTurn, supposed: Situation) -> bool:
@@ -160,9 +167,6 @@ class _Bringing:
         node, land, situation, name = self._node, self._land, turn.situation, self._node.name
         presser = self._by.presser
         given = {
-            "to_bring": True,
-            "formless": node.polygon is None,
-            "pressed": node.polygon is not None and presser.is_pressed(self._goal, node, situation),
             "pressable": land.presses and not presser.has_begun(self._goal, node),
             "attained": land.holds,
             "tolerable": land.loose and meets_any_end(land.loose, to_view_frame(node.polygon, situation)),
@@ -176,10 +180,6 @@ class _Bringing:
         }
         yield from (f"{fact}({name})" for fact, is_so in given.items() if is_so)
         yield f"misses({name},{turn.executor.missed})"
-
-    def examine(self, turn: StageTurn) -> Decision:
-        """Return the next look at what is not clear of the object."""
-        return turn.make_sure(doubts_of_thing(self._node, (f"due({self._node.name})",), turn.situation, must=True))
 
     def press(self, turn: StageTurn) -> Decision:
         """Return the next press of the object against a wall, where it is in hand."""
@@ -305,6 +305,11 @@ class _Bringing:
         if decision.verdict != TaskVerdict.IMPOSSIBLE:
             return decision
         return self._by.checks.noted(self._goal, refusal, decision)
+
+
+def _examine(node: Node, turn: StageTurn) -> Decision:
+    """Return the next look at what is not clear of an object."""
+    return turn.make_sure(doubts_of_thing(node, (f"due({node.name})",), turn.situation, must=True))
 
 
 def _leave_open(missing: str, turn: StageTurn) -> Decision:

@@ -136,7 +136,7 @@ class RefusalChecks:
 
     def measure(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to measure what goals are about; `limit` where it may be smaller than it seems."""
-        if push := self._measure_alike(goals, turn):
+        if push := self._measure(_alike(goals, turn), turn):
             return push
         if goals[0] not in self._refusals:
             return nothing_to_do("nothing is left to measure")
@@ -156,11 +156,11 @@ class RefusalChecks:
 
     def measure_on(self, turn: StageTurn) -> Decision:
         """Return the next command to measure the thing in hand; nothing when that is done, or not asked any more."""
-        return self._measure_alike(turn.stage.goals, turn)
+        return self._measure([one for one in _alike(turn.stage.goals, turn) if one.name == self._alike], turn)
 
-    def _measure_alike(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to measure what goals may be about; nothing when that is done."""
-        for thing in _alike(goals, turn):
+    def _measure(self, things: Sequence[Node], turn: StageTurn) -> Decision:
+        """Return the next command to measure one of some things that goals may be about; nothing when that is done."""
+        for thing in things:
             if push := self._push_to_measure(thing, turn):
                 self._alike = thing.name
                 return push
