@@ -290,7 +290,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **dict.fromkeys([("thing", 1), ("holds", 1)], (NODE_ARGUMENT,)),
         **OUTCOME,
         ("settles", 2): (STEP_ARGUMENT, SUBJECT_ARGUMENT),
-        ("measurable", 1): (SUBJECT_ARGUMENT,),
+        **{(name, 1): (SUBJECT_ARGUMENT,) for name in ("measurable", "unmeasured")},
         **{(name, 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT) for name in ("default_price", "price")},
         ("left", 1): (STEP_ARGUMENT,),
         ("settled", 2): (SUBJECT_ARGUMENT, TIME_ARGUMENT),

@@ -250,7 +250,8 @@ def _begun(advice: Advice, why: str, turn: StageTurn) -> Decision:
 
 
 def _alike(goals: Sequence[Fact], turn: StageTurn) -> list[Node]:
-    """Return the things that some goals may be about once the size of these is known better."""
-    about = {str(term) for goal in goals for term in goal.args}
-    like = {name for parameter, name in turn.reconciled.measurable if parameter in about}
+    """Return the things that may be what some goals are about and was not found, once their size is known better."""
+    terms = {str(term) for goal in goals for term in goal.args}
+    unfound = {term for term in terms if turn.situation.object_of(term) is None}
+    like = {name for parameter, name in turn.reconciled.measurable if parameter in unfound}
     return [thing for thing in turn.situation.model.objects if thing.name in like]
