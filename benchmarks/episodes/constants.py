@@ -43,8 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     names = given.names.split(",") if given.names else list(known)
     replaced = [f"{name}={value}" for name in names for value in neighbours(known[name])]
     worlds = list(product(map(int, given.task.split(",")), range(given.seed, given.seed + given.count)))
-    arguments = ({"replaced": one, "worlds": worlds, "seconds": given.seconds} for one in ["", *replaced])
-    tasks = [WorkerTask("benchmarks.episodes.constants:tried", argument, None) for argument in arguments]
+    asked = ({"replaced": one, "worlds": worlds, "seconds": given.seconds} for one in ["", *replaced])
+    tasks = [WorkerTask("benchmarks.episodes.constants:tried", argument, None) for argument in asked]
     found: dict[str, WithConstant] = {}
     with closing(run_in_processes(tasks, given.jobs)) as ended:
         for index, outcome in ended:
@@ -89,8 +89,10 @@ def replacing(constant: str) -> Iterator[None]:
 
     with patch.object(clingo, "Control", control):
         solver._answer.cache_clear()  # it holds what was answered with another constant
-        yield
-    solver._answer.cache_clear()
+        try:
+            yield
+        finally:
+            solver._answer.cache_clear()
 
 
 def table(found: dict[str, WithConstant], known: dict[str, int], worlds: int) -> str:

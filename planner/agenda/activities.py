@@ -82,7 +82,7 @@ class Activities:
         if (set(self._settling), set(self._resumed)) != (set(SETTLING_STEPS), set(RESUMED_STEPS)):
             raise LookupError("the steps of kb/language/vocabulary.py and of planner/agenda/activities.py differ")
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
-        self._own, self._contacts = OwnGoals(where), PerModel(contact_subgoals)
+        self._own, self._untouched = OwnGoals(where), PerModel(contact_subgoals)
         self._bare = TaskPlan(())  # the step as which the newest command is given, where the task plan has none for it
         self._follows = False  # whether the newest command is one of the present step of the task plan
         self._begun: dict[str, TaskPlan] = {}  # those that may be resumed, by their names
@@ -150,7 +150,7 @@ class Activities:
 
     def _open(self, turn: StageTurn, agenda: Agenda) -> list[str]:
         """Return what is open, as facts for the task plan."""
-        untouched = ["untouched"] * bool(self._contacts(turn.situation))
+        untouched = ["untouched"] * bool(self._untouched(turn.situation))
         return [*_unknown(turn), *agenda.results, *untouched, *self._transporter.checks.facts(turn)]
 
     @property

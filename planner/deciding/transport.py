@@ -87,7 +87,7 @@ class Transporter:
             "settle_for": doing.believe,
             "carry_loosely": doing.carry_loosely,
             "probe": doing.probe,
-            "search": doing.seek,
+            "search": doing.search,
         }
         facts += [*doing.facts(turn), *[f"origin_lost({name})"] * bool(lost), *["vain(examine)"] * (not pressed)]
         why = f"{turn.stage} is not attained as far as is known: users' rules forbid what may be done with {name}"
@@ -223,7 +223,7 @@ class _Bringing:
         ends = self._land.must_reach.ends() or self._land.ends
         return self._by.checks.probed(Refusal(self._node, ends, self._refused), self._without(turn))
 
-    def seek(self, turn: StageTurn) -> Decision:
+    def search(self, turn: StageTurn) -> Decision:
         """Return the next command to see where the object must end, or another way there; or the verdict."""
         if "vain(carry)" not in turn.situation.question.facts:  # it goes to see where the object must end
             turn.executor.forget_misses()
@@ -248,8 +248,7 @@ class _Bringing:
                 return walk
             advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
         if isinstance(advice, See):
-            facts = [f"end_known({node.name})", *[f"minds_doors({node.name})"] * turn.situation.minds_doors(node.name)]
-            return turn.see(advice, partial(_take_along, node, facts, self._without(turn)))
+            return turn.see(advice, partial(_take_along, node, [f"end_known({node.name})"], self._without(turn)))
         self._refused = replace(advice, proved=False) if self._land.some else advice
         return nothing_to_do(self._refused.reason())
 
@@ -261,8 +260,8 @@ class _Bringing:
         if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
             looping = turn.executor.release_looping
             regrasp = {"regrasp": lambda now: now.act(looping(now.situation.model))}
-            if let_go := turn.react([f"circles({node.name})"], regrasp):
-                return let_go
+            if released := turn.react([f"circles({node.name})"], regrasp):
+                return released
         grasps = isinstance(advice.command, Move | Grasp)
         if grasps and (look := turn.make_sure(doubt_of_frame(node, turn.executor.turns, turn.situation))):
             return look
@@ -280,7 +279,6 @@ class _Bringing:
         end_known = bool(land.viewpoints or land.ends) or orientation_is_uncertain(turn.situation.model)
         given = {
             "in_place": land.there,
-            "minds_doors": turn.situation.minds_doors(node.name),
             "end_known": end_known,
             "shuts_in": land.shut_in,
             "taken_before": land.shut_in and self._by.has_taken_along,

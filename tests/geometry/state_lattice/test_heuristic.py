@@ -63,28 +63,27 @@ def test_an_end_can_be_reached_where_there_is_a_cost_to_go(
         assert can_reach_end(lattice, ends, place) == reached
 
 
+def are_free(free: np.ndarray, offsets: np.ndarray, square: np.ndarray) -> bool:
+    """Return whether all squares at some offsets (east, north) from a square (row, column) are free."""
+    met = offsets + square[::-1] + 20
+    return bool(np.pad(free, 20)[met[:, 1], met[:, 0]].all())
+
+
 @pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(st.sampled_from(SHAPES), floors())
 def test_a_push_is_free_where_all_the_squares_that_it_meets_are(shape: shapely.Polygon, free: np.ndarray) -> None:
-    lattice, table = lattice_of(shape, free)
-    body, columns = new_footprints(near_origin(shape)), free.shape[1]
-    padded = np.pad(free, 20)
-    for number, place in enumerate(table.tolist()):
-        row, column = divmod(number, columns)
+    (lattice, table), body = lattice_of(shape, free), new_footprints(near_origin(shape))
+    for place, square in zip(table.tolist(), np.argwhere(np.ones_like(free)), strict=True):
         for d in range(len(PUSH_DIRECTIONS)):
-            met = body.steps[d] + np.array([column + 20, row + 20])
-            assert (lattice.push_cost[0, d, place] > 0) == padded[met[:, 1], met[:, 0]].all()
+            assert (lattice.push_cost[0, d, place] > 0) == are_free(free, body.steps[d], square)
 
 
 @settings(max_examples=30, deadline=None)
 @given(st.sampled_from(SHAPES), floors())
 def test_a_turn_is_free_where_all_the_squares_that_it_meets_are(shape: shapely.Polygon, free: np.ndarray) -> None:
-    lattice, table = lattice_of(shape, free)
-    body, columns = new_footprints(near_origin(shape)), free.shape[1]
-    padded = np.pad(free, 20)
-    for number, place in enumerate(table.tolist()):
-        row, column = divmod(number, columns)
+    (lattice, table), body = lattice_of(shape, free), new_footprints(near_origin(shape))
+    for place, square in zip(table.tolist(), np.argwhere(np.ones_like(free)), strict=True):
         for hold, turn in enumerate(body.turns):
-            met = np.vstack([turn, body.lying]) + np.array([column + 20, row + 20])
-            assert (turn_cost(lattice, hold, 0, place, 1) == 0) == padded[met[:, 1], met[:, 0]].all()
+            met = np.vstack([turn, body.lying])
+            assert (turn_cost(lattice, hold, 0, place, 1) == 0) == are_free(free, met, square)
