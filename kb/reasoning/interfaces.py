@@ -97,8 +97,9 @@ ACTIVITIES: Forms = {  # of the agenda, first those about nothing in particular
 }
 ACTIVITY_ARGUMENT = compound_argument("activity", "activities", ACTIVITIES)
 DOUBTS: Forms = {  # what steps rest on
-    **dict.fromkeys(("kind", "outline", "extent", "way", "surroundings"), (NODE_ARGUMENT,)),
-    "frame": (),
+    **dict.fromkeys(("kind", "outline", "extent", "way", "surroundings", "again"), (NODE_ARGUMENT,)),
+    "bounds": (PARAMETER_ARGUMENT,),
+    **dict.fromkeys(("frame", "differs"), ()),
 }
 DOUBT_ARGUMENT = compound_argument("doubt", "doubts", DOUBTS)
 REFLEX_NAMES = ("draw_back", "let_go", "regrasp", "take_along", "fetch", "lead_out", "detour")
@@ -319,12 +320,12 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("aim", 3): (NUMBER_ARGUMENT, word_argument("kind", SUBGOAL_KINDS), LENGTH_ARGUMENT),
         ("besides", 2): (NUMBER_ARGUMENT, LENGTH_ARGUMENT),
         ("chance", 2): (NUMBER_ARGUMENT, CONFIDENCE_ARGUMENT),
-        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "walked")},
+        **{(name, 1): (NUMBER_ARGUMENT,) for name in ("last", "walked", "in_vain")},
         ("goes_to", 2): (NUMBER_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("in_room", 2): (LINK_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("point", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
         ("beside", 2): (NUMBER_ARGUMENT, NODE_ARGUMENT),
-        **{(name, 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT) for name in ("in_vain", "aim_price")},
+        ("aim_price", 2): (NUMBER_ARGUMENT, AMOUNT_ARGUMENT),
         ("halt", 3): (NUMBER_ARGUMENT, LENGTH_ARGUMENT, AMOUNT_ARGUMENT),
         ("tells", 4): (NUMBER_ARGUMENT, *WALL_ARGUMENTS, AMOUNT_ARGUMENT),
         **{(name, 3): (*WALL_ARGUMENTS, THOUSANDTHS_ARGUMENT) for name in ("counted_wall", "supposed")},
@@ -338,19 +339,18 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(way, 2): (NUMBER_ARGUMENT, it) for way, it in (("part", LINK_ARGUMENT), ("through", PLAN_DOOR_ARGUMENT))},
         ("not_through", 1): (PLAN_DOOR_ARGUMENT,),
         ("door_price", 2): (PLAN_DOOR_ARGUMENT, LENGTH_ARGUMENT),
-        ("holds", 1): (NODE_ARGUMENT,),
         **dict.fromkeys([("offered", 2), ("step", 2)], (NUMBER_ARGUMENT, ROBOT_STEP_ARGUMENT)),
         ("in_hand", 2): (NODE_ARGUMENT, NUMBER_ARGUMENT),
         ("there", 3): (LENGTH_ARGUMENT, LENGTH_ARGUMENT, NUMBER_ARGUMENT),
         ("unsure", 2): (DOUBT_ARGUMENT, NUMBER_ARGUMENT),
-        **{(name, 1): (DOUBT_ARGUMENT,) for name in ("telling", "needed")},
+        **{(name, 1): (DOUBT_ARGUMENT,) for name in ("telling", "needed", "claimed")},
         **{
             (name, 1): (NODE_ARGUMENT,)
             for names in (
                 "due vague in_way bars goes_on turned_next inexact drawable other_way misgrasped unmoving looks_away",
                 "in_place end_known minds_doors shuts_in taken_before lets_go pushed_on stays circles",
                 "to_bring formless pressed pressable attained tolerable origin_lost has_end near_end loose_end",
-                "end_open going_to_see probes see_first pressing firm",
+                "end_open going_to_see probes see_first pressing firm holds",
             )
             for name in names.split()
         },

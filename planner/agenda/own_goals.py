@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -22,9 +23,8 @@ from utak.planner.deciding.search import contact_subgoals, subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
 from utak.planner.deciding.verification import (
-    check_elsewhere,
-    looks_again,
-    looks_at_contradiction,
+    doubts_of_belief,
+    doubts_of_bounds,
     robot_square,
 )
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
@@ -123,27 +123,24 @@ class OwnGoals:
     def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
         """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict."""
         situation, model = turn.situation, turn.situation.model
-        contradiction = looks_at_contradiction(situation)
-        meant = (situation.object_of(str(term)) for goal in turn.stage.goals for term in goal.args)
-        doubts = [*contradiction, *(look for node in filter(None, meant) for look in looks_again(node, situation))]
-        for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
-            x = str(goal.args[0])
-            node = situation.object_of(x)
+        meant = [situation.object_of(str(term)) for goal in turn.stage.goals for term in goal.args]
+        doubts, pushes = [*doubts_of_belief(filter(None, meant), situation)], {}
+        rests = [goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS]
+        for x in dict.fromkeys(str(goal.args[0]) for goal in rests):
+            node, goals = situation.object_of(x), [goal for goal in rests if str(goal.args[0]) == x]
             began = model.frame.origin if node is None else transporter.origin_of(x, node, situation)
             covered = robot_square(model) if node is None else model.mask(node.patch)
-            if doubts:
-                continue
-            doubts = check_elsewhere(goal, began, covered, situation)
-            if node is not None and doubts:
-                there = situation.goal_rooms(goal, began, situation.rooms, MIN_DOOR_CONFIDENCE)
-                if pushed := next(filter(None, (push_to_see(node, doubt, there, turn) for doubt in doubts)), None):
-                    return pushed
-        looks = doubts if model.contradicted < RESIDUAL_WINDOW else []  # so many looks from elsewhere told nothing new
-        found = turn.seek(looks, lambda: doubts[0].what) if doubts else nothing_to_do("nothing is left to look at")
+            doubts += doubts_of_bounds(goals, x, began, covered, situation)
+            if node is not None and node.name == model.held:
+                there = situation.goal_rooms(goals[0], began, situation.rooms, MIN_DOOR_CONFIDENCE)
+                pushes[doubts[-1].name] = partial(push_to_see, node, there, turn)
+        # So many looks from elsewhere told nothing new.
+        found = turn.make_sure(doubts if model.contradicted < RESIDUAL_WINDOW else [], pushes)
+        if not found and model.contradicted:
+            why = f"it cannot be told whether {turn.stage} holds: what is seen differs from what is believed"
+            found = Decision(None, f"{why}, and nothing is left to look at", TaskVerdict.LIMIT)
         if found.verdict is not None and model.held is not None:  # what is in hand may shut the robot in
             return Decision(Release(), f"{model.held} is released, because the robot must walk: {found.why}")
-        if found.verdict is not None and not contradiction:  # as for pieces that no floor is beside
-            return nothing_to_do(f"what the goals rest on cannot be looked at any better; {found.why}")
         return found
 
     def _go(self, turn: StageTurn) -> Decision:

@@ -3,13 +3,13 @@
 Geometry says here what is open and from where it is told; planner/asp/deciding/senses.lp chooses.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
 from utak.kb.mapping.occupancy import OPEN
 from utak.kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from utak.planner.carrying.manipulation_oracle import ManipulationPlan
-from utak.planner.question import Question, argument
+from utak.planner.question import Atoms, Question, argument
 from utak.planner.screen.moves import orientation_is_uncertain
 from utak.planner.screen.projection import dilate
 from utak.planner.sights.frontiers import Viewpoint, rim_viewpoint, touch_viewpoint, viewpoint_of
@@ -43,10 +43,26 @@ def sensed_first(doubts: Iterable[Doubt], situation: Situation) -> Sense | None:
     told = {doubt.name: doubt for doubt in doubts if len(doubt.look.squares)}
     if not told:
         return None
-    facts = [fact for doubt in told.values() for fact in doubt.facts]
-    question = situation.question.adding([*facts, *(f"unsure({name},{number})" for number, name in enumerate(told))])
+    question = _asked(told.values(), situation)
     name = str(argument(question.answer("senses") or (), "sense"))
     return Sense(told[name], question.keeping(f"sense({name})")) if name in told else None
+
+
+def rules_that_leave_untold(doubts: Iterable[Doubt], situation: Situation) -> tuple[str, ...]:
+    """Return the users' rules, as `rules.lp:3`, because of which nothing is told that goals rest on; () for none."""
+
+    def is_untold(atoms: Atoms) -> bool:
+        """Return whether something is left untold in an answer."""
+        return any(atom.name == "untold" for atom in atoms)
+
+    question = _asked([doubt for doubt in doubts if len(doubt.look.squares)], situation)
+    return question.blamed(is_untold) if question.rules and is_untold(question.answer("senses") or ()) else ()
+
+
+def _asked(doubts: Collection[Doubt], situation: Situation) -> Question:
+    """Return the question which of some doubts is told first."""
+    facts = [fact for doubt in doubts for fact in doubt.facts]
+    return situation.question.adding([*facts, *(f"unsure({one.name},{number})" for number, one in enumerate(doubts))])
 
 
 def doubts_of_thing(node: Node, facts: tuple[str, ...], situation: Situation, must: bool = False) -> Iterator[Doubt]:

@@ -79,7 +79,7 @@ class Pursuer:
         ways_by_price = by_dearest_door(situation)
         ruled, refused = are_ruled(situation), list[RefusedEnd]()
         while True:
-            offered = [_priced(one, ways_by_price)[0] for one in self._circles.counted(subgoals, model)]
+            offered = [_priced(one, ways_by_price)[0] for one in self._circles.told(subgoals, model)]
             if fewest is not None:
                 offered = fewest.priced(offered)
             if refused:
@@ -109,7 +109,7 @@ class Pursuer:
                 continue
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
-            self._circles.tire(to_map_squares(subgoal.squares, model))
+            self._circles.give_up(subgoal, model)
 
     def _walk(
         self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None

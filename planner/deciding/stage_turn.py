@@ -10,15 +10,16 @@ from utak.kb.language.terms import Fact
 from utak.kb.task.binding import Reconciliation
 from utak.planner.advice import Act, Go, See
 from utak.planner.carrying.plan_executor import Advice, PlanExecutor
-from utak.planner.carrying.preconditions import Doubt, sensed_first
+from utak.planner.carrying.preconditions import Doubt, rules_that_leave_untold, sensed_first
 from utak.planner.deciding.pursuit import Pursuer
 from utak.planner.deciding.verification import Verifier
-from utak.planner.decision import Decision, command_or_nothing, nothing_to_do
+from utak.planner.decision import Decision, TaskVerdict, command_or_nothing, nothing_to_do
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.question import Question
 from utak.planner.screen.moves import halt_exactly_at
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
+from utak.planner.steps import forbidden_by
 from utak.planner.subgoal_kind import SubgoalKind
 
 ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/asp/deciding/activities.lp calls them
@@ -67,26 +68,34 @@ class StageTurn:
         """Return whether a command that is about to be given leads in a loop: see Pursuer.closes_loop."""
         return self.pursuer.closes_loop(self.situation.model, command)
 
-    def look(self, looks: Sequence[Subgoal]) -> Decision:
+    def look(self, looks: Sequence[Subgoal], along: Callable[[Subgoal], Decision] | None = None) -> Decision:
         """Return the next command towards the best look; nothing for no looks; `limit` when no way leads there."""
-        return self.seek(looks, lambda: looks[0].what) if looks else nothing_to_do("nothing is left to look at")
+        if not looks:
+            return nothing_to_do("nothing is left to look at")
+        return self.seek(looks, lambda: looks[0].what, along=along)
 
     def look_if_reached(self, looks: Sequence[Subgoal]) -> Decision:
         """Return the next command towards the best look; nothing for no looks, or when no way leads there."""
         return command_or_nothing(self.look(looks))
 
-    def make_sure(self, doubts: Iterable[Doubt]) -> Decision:
+    def make_sure(
+        self, doubts: Iterable[Doubt], pushes: "Mapping[str, Callable[[Subgoal], Decision]] | None" = None
+    ) -> Decision:
         """Return the next command to see or feel what must be told first; nothing for no need, or for no way there."""
+        # pushes : by doubts, what shows it with a thing in hand
         left, last = list(doubts), [f"telling({self.verifier.telling})"] * bool(self.verifier.telling)
         situation = replace(self.situation, question=self.situation.question.adding(last))
         self.verifier.telling = ""
         while (sense := sensed_first(left, situation)) is not None:
             asked = self.within(replace(situation, question=sense.question))
-            look = asked.look([Subgoal(SubgoalKind.INSPECT, *sense.doubt.look)])
+            look = asked.look([Subgoal(SubgoalKind.INSPECT, *sense.doubt.look)], (pushes or {}).get(sense.doubt.name))
             if look.command is not None or sense.doubt.must:
                 self.verifier.telling = sense.doubt.name
                 return look
             left.remove(sense.doubt)
+        if rules := rules_that_leave_untold(left, situation):
+            why = f"{self.stage} is not believed to hold: {forbidden_by(rules, 'to make sure of that')}"
+            return Decision(None, why, TaskVerdict.LIMIT)
         return nothing_to_do("nothing must be told first")
 
     def react(self, facts: Iterable[str], reflexes: "Mapping[str, Callable[[StageTurn], Decision]]") -> Decision:

@@ -354,13 +354,10 @@ def _push_to_see(advice: Advice, what: str, turn: StageTurn) -> Decision:
     return turn.act_anew(advice, f"{advice.why}: {what}" if isinstance(advice, Act) else "")
 
 
-def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> Decision:
+def push_to_see(node: Node, within: Bools, turn: StageTurn, look: Subgoal) -> Decision:
     """Return the push with which a held object stays within some squares while the robot looks; nothing for none."""
-    model = turn.situation.model
-    if model.held != node.name:
-        return nothing_to_do(f"{node.name} is not in hand")
     column, row = turn.situation.cost_maps.here
-    rows, columns = np.nonzero(model.mask(node.patch))
+    rows, columns = np.nonzero(turn.situation.model.mask(node.patch))
     targets = [divmod(square, within.shape[1]) for square in look.squares.tolist()]
     moved = [(rows + y - row, columns + x - column) for y, x in targets]
     inside = [

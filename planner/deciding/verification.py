@@ -1,13 +1,13 @@
 """Goal verification and active perception: looks that make sure before the robot commits itself or claims something.
 
-They make sure of an object before it is carried, of the orientation of the frame, of a passage that is said to be too
-narrow, and of beliefs that the last impression contradicts. Each is a list of subgoals, one of which is gone to first;
-[] where there is nothing to make sure of.
+They make sure of a passage that is said to be too narrow, of beliefs that the last impression contradicts, and of what
+bounds the floor by which something is elsewhere than it began. What of that is told first, senses.lp chooses.
 """
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import islice
+from itertools import chain
 
 import numpy as np
 
@@ -16,11 +16,13 @@ from utak.kb.language.terms import Fact
 from utak.kb.world.model import Node, WorldModel
 from utak.kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from utak.planner.carrying.infeasibility import Infeasibility
+from utak.planner.carrying.preconditions import Doubt
 from utak.planner.goals.bounds import unfelt_bounds
 from utak.planner.goals.robot_goals import robot_stands_on
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.projection import dilate
 from utak.planner.sights import frontiers
+from utak.planner.sights.frontiers import Viewpoint, viewpoint_of
 from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
 
@@ -50,31 +52,29 @@ class Verifier:
         return [Subgoal(SubgoalKind.INSPECT, near, "it is not sure that the passage is that narrow")]
 
 
-def looks_at_contradiction(situation: Situation) -> list[Subgoal]:
-    """Return a look from elsewhere when the last impression contradicts what is believed; [] when it does not."""
+def doubts_of_belief(nodes: Iterable[Node], situation: Situation) -> Iterator[Doubt]:
+    """Yield what is open of all that is believed, and of some things, before goals about these count as attained."""
     # What contradicts was withdrawn, so the new impression agrees with the rest if that is right.
     model = situation.model
-    if not model.contradicted:
-        return []
-    what = "what is seen differs from what is believed"
-    return [Subgoal(SubgoalKind.INSPECT, *frontiers.viewpoint_of(situation.cost_maps, robot_square(model), what))]
+    if model.contradicted:
+        what = "what is seen differs from what is believed"
+        yield _claimed("differs", viewpoint_of(situation.cost_maps, robot_square(model), what), situation)
+    for node in nodes:
+        squares = model.mask(node.patch)
+        if node.looked_at_again:
+            what = f"others may have moved {node.name} since it was seen"
+        elif node.moved and not _is_looked_at(squares, model):
+            what = f"{node.name} was not seen closely since looks differed"
+        else:
+            continue
+        yield _claimed(f"again({node.name})", viewpoint_of(situation.cost_maps, squares, what), situation)
 
 
-def looks_again(node: Node, situation: Situation) -> list[Subgoal]:
-    """Return a look at an object that may lie elsewhere, as others or contradictions have it; [] for no need."""
-    model, squares = situation.model, situation.model.mask(node.patch)
-    if node.looked_at_again:
-        what = f"others may have moved {node.name} since it was seen"
-    elif node.moved and not _is_looked_at(squares, model):
-        what = f"{node.name} was not seen closely since looks differed"
-    else:
-        return []
-    return _inspect(frontiers.viewpoint_of(situation.cost_maps, squares, what))
-
-
-def _inspect(look: frontiers.Viewpoint) -> list[Subgoal]:
-    """Return a look as a subgoal; [] where it cannot be had from any square."""
-    return [Subgoal(SubgoalKind.INSPECT, *look)] if len(look.squares) else []
+def _claimed(name: str, look: Viewpoint, situation: Situation) -> Doubt:
+    """Return what is open of what goals rest on that are about to count as attained."""
+    # What is in hand may shut the robot in: then it is let go.
+    must = name == "differs" or situation.model.held is not None
+    return Doubt(name, look, (f"claimed({name})",), must)
 
 
 def _is_looked_at(squares: Bools, model: WorldModel) -> bool:
@@ -89,24 +89,28 @@ def robot_square(model: WorldModel) -> Bools:
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
-def check_elsewhere(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
-    """Return what to see or feel next before something is said to be elsewhere than it began; [] when that is sure."""
-    looks = unfelt_bounds(goal, began, covered, situation)
-    # With something in hand, a push may show what is further away.
-    nearest = islice(looks, 1 if situation.model.held is None else None)
-    unseen = unseen_beyond_door(goal, began, covered, situation)
-    return unseen or [Subgoal(SubgoalKind.INSPECT, *look) for look in nearest]
+def doubts_of_bounds(
+    goals: Iterable[Fact], name: str, began: XY, covered: Bools, situation: Situation
+) -> Iterator[Doubt]:
+    """Yield what is open of the bounds by which something is elsewhere than it began, as some goals have it."""
+    for goal in goals:
+        looks = chain(
+            unseen_beyond_door(goal, began, covered, situation), unfelt_bounds(goal, began, covered, situation)
+        )
+        if (nearest := next(looks, None)) is not None:
+            yield _claimed(f"bounds({name})", nearest, situation)
+            return
 
 
-def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> list[Subgoal]:
-    """Return where to see how wide the floor is beyond a door, before something is said to be there; [] if sure."""
+def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Iterator[Viewpoint]:
+    """Yield where to see how wide the floor is beyond a door, before something is said to be there; nothing if sure."""
     model, view = situation.model, situation.model.view
     if goal.name == "around":
-        return []
+        return
     closed = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
     rooms = rooms_of(replace(model, view=closed), situation.rules, model.verge | ~view.seen)
     if (situation.goal_rooms(goal, began, rooms, MIN_DOOR_CONFIDENCE) & covered).any():
-        return []
+        return
     rows, columns = np.nonzero(covered)
 
     def distance(look: frontiers.Viewpoint) -> float:
@@ -114,5 +118,5 @@ def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situati
         there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
-    nearest = min(frontiers.find_frontiers(situation.cost_maps, frontiers.VIEW_SPACING), key=distance, default=None)
-    return [] if nearest is None else [Subgoal(SubgoalKind.INSPECT, *nearest)]
+    seen_from = frontiers.find_frontiers(situation.cost_maps, frontiers.VIEW_SPACING)
+    yield from [min(seen_from, key=distance)] if seen_from else []

@@ -8,5 +8,5 @@ walks         Walks: links and ways by one of three path-finders, and the choice
 encircle      routes that wind once around an object
 sticky_route  StickyRoute: the route under way, kept while it holds
 fewest_moves  FewestMoves: subgoals that one or two straight moves reach
-loop_guard    LoopGuard: loop detection, and the price of subgoals that led in a loop
+loop_guard    LoopGuard: loop detection, and which subgoals led in a loop
 """

@@ -1,10 +1,9 @@
 """Loop detection: the same command in the same state of belief leads where it led before.
 
-Then the walk has not shown what it was made for, and the robot would make it again. It is counted how often that was so
-for a subgoal, until more is known; planner/asp/deciding/subgoals.lp says what follows.
+Then the walk has not shown what it was made for, and the robot would make it again. The subgoal is given up until more
+is known (planner/asp/deciding/subgoals.lp).
 """
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import astuple
 
@@ -25,8 +24,8 @@ class LoopGuard:
     def __init__(self) -> None:
         """Remember no command and no loop yet."""
         self._given: set[tuple[StateKey, StateKey]] = set()
-        self._loops: Counter[Square] = Counter()  # by square of a subgoal, map frame
-        self._known: StateKey = ()  # the state of knowledge in which the loops were counted
+        self._vain: set[Square] = set()  # squares of the subgoals that led in a loop, map frame
+        self._known: StateKey = ()  # the state of knowledge in which they did
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
         """Return whether a command was given before at this place with the same knowledge, and remember it."""
@@ -38,21 +37,19 @@ class LoopGuard:
         self._given.add(key)
         return again
 
-    def tire(self, squares: frozenset[Square]) -> None:
-        """Count one more loop for a subgoal with these squares (x, y) of the map frame."""
-        self._loops.update(squares)
+    def give_up(self, subgoal: Subgoal, model: WorldModel) -> None:
+        """Note that a subgoal led in a loop."""
+        self._vain |= to_map_squares(subgoal.squares, model)
 
-    def counted(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
-        """Return the subgoals, each with how often it led in a loop, as far as what is known is the same."""
+    def told(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
+        """Return the subgoals, each with whether it led in a loop, as far as what is known is the same."""
         known = _knowledge(model)
         if known != self._known:
             self._known = known
-            self._loops.clear()
-        if not self._loops:
+            self._vain.clear()
+        if not self._vain:
             return list(subgoals)
-        squares = (to_map_squares(subgoal.squares, model) for subgoal in subgoals)
-        times = [max((self._loops[square] for square in there), default=0) for there in squares]
-        return [one._replace(in_vain=often) for one, often in zip(subgoals, times, strict=True)]
+        return [one._replace(in_vain=not self._vain.isdisjoint(to_map_squares(one.squares, model))) for one in subgoals]
 
 
 def _knowledge(model: WorldModel) -> StateKey:

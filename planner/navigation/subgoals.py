@@ -24,7 +24,7 @@ class Subgoal(NamedTuple):
     squares: SquareIndices
     what: str  # the reason, in words
     chance: int = 100  # percent of belief that it leads to what is looked for
-    in_vain: int = 0  # how often it led to the same command in the same state of belief
+    in_vain: bool = False  # whether it led to the same command in the same state of belief
     price: float = 0.0  # squares of way that it costs besides the way there; negative for a bonus
     felt: tuple[str, ...] = ()  # of a halt to feel walls: the moves there, and where things may begin, as arguments
 
@@ -59,7 +59,7 @@ def choose(
             facts.append(f"aim({number},{kind},{way})")
             facts += [f"besides({number},{besides})"] * bool(besides)
             facts.append(f"chance({number},{subgoal.chance})")
-            facts += [f"in_vain({number},{subgoal.in_vain})"] * bool(subgoal.in_vain)
+            facts += [f"in_vain({number})"] * subgoal.in_vain
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
             if subgoal.felt:
                 moves, *told = subgoal.felt

@@ -26,9 +26,8 @@ from utak.planner.carrying.preconditions import doubt_of_frame, sensed_first
 from utak.planner.deciding.transport import Transporter
 from utak.planner.deciding.verification import (
     Verifier,
-    check_elsewhere,
-    looks_again,
-    looks_at_contradiction,
+    doubts_of_belief,
+    doubts_of_bounds,
     unseen_beyond_door,
 )
 from utak.planner.goals.bounds import unfelt_bounds
@@ -116,10 +115,11 @@ def test_a_narrow_passage_on_an_unsure_map_is_looked_at_from_close_by(sure: bool
 
 
 def test_after_a_contradiction_the_robot_looks_from_elsewhere_near_by() -> None:
-    assert looks_at_contradiction(situation_of(stood_in(BESIDE_A_THING, False))) == []
+    assert [*doubts_of_belief((), situation_of(stood_in(BESIDE_A_THING, False)))] == []
     model = stood_in(BESIDE_A_THING, True)
-    (subgoal,) = looks_at_contradiction(situation_of(model))
-    away = np.abs(squares_from(model, subgoal.squares)).max(1)
+    (doubt,) = doubts_of_belief((), situation_of(model))
+    assert doubt.name == "differs" and doubt.must
+    away = np.abs(squares_from(model, doubt.look.squares)).max(1)
     assert len(away)
     assert away.min() > 0
     assert away.max() <= FOVEA_RANGE
@@ -132,19 +132,19 @@ def test_what_was_moved_is_seen_from_close_by_again_after_a_contradiction() -> N
     moved = replace(model, objects=(replace(node, moved=True),), looked_from=frozenset({here, far}))
     for looked, again in (({here, far}, False), ({here}, False), ({far}, True), (set(), True)):
         situation = situation_of(replace(moved, looked_since=frozenset(looked)))
-        found = looks_again(situation.model.objects[0], situation)
-        assert bool(found) == again, looked
+        found = [doubt.name for doubt in doubts_of_belief(situation.model.objects, situation)]
+        assert found == ["again(o1)"] * again, looked
     unmoved = situation_of(replace(model, looked_from=frozenset({here})))
-    assert looks_again(node, unmoved) == []
+    assert [*doubts_of_belief([node], unmoved)] == []
 
 
 @pytest.mark.parametrize("again", [False, True])
 def test_what_others_may_have_moved_is_looked_at_again(again: bool) -> None:
     model = known_model(BESIDE_A_THING)
     node = replace(model.objects[0], looked_at_again=again)
-    found = looks_again(node, situation_of(replace(model, objects=(node,))))
+    found = [*doubts_of_belief([node], situation_of(replace(model, objects=(node,))))]
     assert bool(found) == again
-    assert all(f"others may have moved {node.name}" in look.what for look in found)
+    assert all(f"others may have moved {node.name}" in doubt.look.what for doubt in found)
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
@@ -211,7 +211,7 @@ def test_a_door_is_sure_when_verge_was_felt_on_both_of_its_jambs() -> None:
     def is_doubtful(*felt: tuple[int, int]) -> bool:
         """Return whether the robot, in the east, may be in the same room still, with verge felt on some squares."""
         situation = situation_of(replace(model, felt=dict.fromkeys(felt, "b")))
-        return bool(check_elsewhere(IN_NEXT_ROOM, (-20.0, 0.5), model.squares([(0, 0)]), situation))
+        return any(doubts_of_bounds([IN_NEXT_ROOM], "x", (-20.0, 0.5), model.squares([(0, 0)]), situation))
 
     assert is_doubtful()
     assert all(is_doubtful(jamb) for jamb in jambs)
@@ -226,8 +226,8 @@ def test_of_what_is_to_be_felt_the_nearest_is_asked_for_first() -> None:
     ways = [way.cost for way in map(situation.cost_maps.nearest, looks) if way is not None]
     assert len(ways) == len(looks) > 1
     assert ways == sorted(ways)
-    (first,) = check_elsewhere(IN_NEXT_ROOM, began, covered, situation)
-    assert first.squares.tolist() == looks[0].tolist()
+    (first,) = doubts_of_bounds([IN_NEXT_ROOM], "x", began, covered, situation)
+    assert first.look.squares.tolist() == looks[0].tolist()
 
 
 ARM = [  # a room with an arm to the east, just as long as it is seen to be
@@ -249,15 +249,15 @@ def test_the_mouth_of_an_arm_is_no_door_while_squares_beyond_are_unseen(goal: Fa
     situation = situation_of(walked(ARM, WAY).model)
     model = situation.model
     covered, began = model.squares([(24, -10), (25, -10)]), (0.5, 5.0)
-    (look,) = check_elsewhere(goal, began, covered, situation)
-    rows, columns = np.divmod(look.squares, model.labels.shape[1])
+    (doubt,) = doubts_of_bounds([goal], "x", began, covered, situation)
+    rows, columns = np.divmod(doubt.look.squares, model.labels.shape[1])
     assert (columns + model.view.west > 16).all() and (rows + model.view.south < -4).all()
-    assert not check_elsewhere(AROUND_A_CORNER, began, covered, situation)
+    assert not [*doubts_of_bounds([AROUND_A_CORNER], "x", began, covered, situation)]
     assert 1 in {side for door in situation.rooms.sure for side in door.sides}
 
 
 def test_a_floor_that_is_seen_to_be_wide_is_another_room() -> None:
     situation = situation_of(walked(NEXT, [*WAY, (10, 2)]).model)
     covered = situation.model.squares([(24, -10), (25, -10)])
-    assert unseen_beyond_door(IN_NEXT_ROOM, (0.5, 5.0), covered, situation) == []
+    assert [*unseen_beyond_door(IN_NEXT_ROOM, (0.5, 5.0), covered, situation)] == []
     assert situation.goal_rooms(IN_NEXT_ROOM, (0.5, 5.0), situation.rooms, MIN_DOOR_CONFIDENCE)[covered].all()

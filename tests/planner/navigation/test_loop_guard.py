@@ -1,4 +1,4 @@
-"""Loops are detected, and counted for the subgoals that lead in them."""
+"""Loops are detected, and noted of the subgoals that lead in them."""
 
 from dataclasses import replace
 
@@ -34,14 +34,13 @@ def test_more_knowledge_or_another_place_makes_no_loop() -> None:
     assert not guard.noticed(replace(MODEL, view=MODEL.view._replace(state=state)), Move(1.0, 0.0))
 
 
-def test_loops_are_counted_for_each_subgoal_until_more_is_known() -> None:
+def test_a_loop_is_noted_of_its_subgoal_until_more_is_known() -> None:
     guard = LoopGuard()
     row, column = MODEL.view.locate(2.5, 0.5)
     there = Subgoal("explore", np.array([row * MODEL.labels.shape[1] + column]), "")
     other = Subgoal("explore", there.squares + 1, "")
-    assert guard.counted([there, other], MODEL) == [there, other]
-    for times in (1, 2):
-        guard.tire(frozenset({(2, 0), (900, 900)}))
-        assert [one.in_vain for one in guard.counted([there, other], MODEL)] == [times, 0]
+    assert guard.told([there, other], MODEL) == [there, other]
+    guard.give_up(there, MODEL)
+    assert [one.in_vain for one in guard.told([there, other], MODEL)] == [True, False]
     more = replace(MODEL, barred=frozenset({(3, 3)}))
-    assert guard.counted([there, other], more) == [there, other]
+    assert guard.told([there, other], more) == [there, other]
