@@ -133,7 +133,7 @@ class OwnGoals:
             doubts += doubts_of_bounds(goals, x, began, covered, situation)
             if node is not None and node.name == model.held:
                 there = situation.goal_rooms(goals[0], began, situation.rooms, MIN_DOOR_CONFIDENCE)
-                pushes[doubts[-1].name] = partial(push_to_see, node, there, turn)
+                pushes[f"bounds({x})"] = partial(push_to_see, node, there, turn)
         # So many looks from elsewhere told nothing new.
         found = turn.make_sure(doubts if model.contradicted < RESIDUAL_WINDOW else [], pushes)
         if not found and model.contradicted:

@@ -94,7 +94,7 @@ class StageTurn:
                 return look
             left.remove(sense.doubt)
         if rules := rules_that_leave_untold(left, situation):
-            why = f"{self.stage} is not believed to hold: {forbidden_by(rules, 'to make sure of that')}"
+            why = f"{self.stage} cannot be said to hold: {forbidden_by(rules, 'to make sure of that')}"
             return Decision(None, why, TaskVerdict.LIMIT)
         return nothing_to_do("nothing must be told first")
 

@@ -48,6 +48,15 @@ def test_a_rule_about_what_is_told_first_changes_what_its_sentence_says(rule: st
         assert walks_for(why, before) > walks_for(why, after) == 0
 
 
+@pytest.mark.parametrize("example", few(["go_through_door", "push_square_next_room"], ["go_through_door"]))
+def test_what_goals_rest_on_is_not_believed_where_a_rule_forbids_to_tell_it(example: str, tmp_path: Path) -> None:
+    rule = tmp_path / "untold.lp"
+    rule.write_text(":- sense(bounds(_)).\n", encoding="utf-8")
+    episode = utak.Run(str(ROOT / "examples" / example), rules=(str(rule),), max_steps=40).finish()
+    assert episode.verdict == "limit"
+    assert f"cannot be said to hold: the rule at {rule}:1 forbids to make sure of that" in episode.reason
+
+
 def test_a_look_that_a_plan_needs_stands_before_its_grasp() -> None:
     """The plan that is recorded goes on with the grasp for which the look is, and why tells what was open."""
     episode = run("push_l_tight_door")
