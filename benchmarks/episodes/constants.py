@@ -1,6 +1,6 @@
 """Compare constants of the planner's programs: whole runs with each of them at its half and at its double.
 
-    python -m benchmarks.episodes.constants --task 5,6,7,8,9 --count 4 --seed 0 --jobs 2 [--names long_plan,few_looks]
+    python -m benchmarks.episodes.constants --task 5,6,7,8,9 --count 4 --seed 0 --noise 0.05 --jobs 2
 
 The first row is the programs as they are. Commands are counted in the worlds that are achieved on both sides.
 """
@@ -43,7 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     names = given.names.split(",") if given.names else list(known)
     replaced = [f"{name}={value}" for name in names for value in neighbours(known[name])]
     worlds = list(product(map(int, given.task.split(",")), range(given.seed, given.seed + given.count)))
-    asked = ({"replaced": one, "worlds": worlds, "seconds": given.seconds} for one in ["", *replaced])
+    conditions = {"seconds": given.seconds, "noise": given.noise}
+    asked = ({"replaced": one, "worlds": worlds, "conditions": conditions} for one in ["", *replaced])
     tasks = [WorkerTask("benchmarks.episodes.constants:tried", argument, None) for argument in asked]
     found: dict[str, WithConstant] = {}
     with closing(run_in_processes(tasks, given.jobs)) as ended:
@@ -70,7 +71,7 @@ def neighbours(value: int) -> tuple[int, int]:
 
 def tried(argument: dict[str, Any]) -> dict[str, Any]:
     """Run some worlds in a worker process with a constant replaced, as `most_misses=3`, or with none for ""."""
-    conditions = Conditions(seconds=argument["seconds"])
+    conditions = Conditions(**argument["conditions"])
     with tempfile.TemporaryDirectory(prefix="utak-constants-") as folder, replacing(argument["replaced"]):
         run = partial(run_trial, conditions=conditions, folder=Path(folder))
         trials = [run(task, seed) for task, seed in argument["worlds"]]
@@ -113,6 +114,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--task", default="5,6,7,8,9", help="tasks with commas between (%(default)s)")
     parser.add_argument("--count", type=int, default=4, help="worlds a task (%(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
+    parser.add_argument("--noise", type=float, default=0.0, help="as for `utak run` (%(default)s)")
     parser.add_argument("--jobs", type=int, default=1, help="processes (%(default)s)")
     parser.add_argument("--seconds", type=int, default=60, help="most processor seconds of a world (%(default)s)")
     parser.add_argument("--names", default="", help="constants with commas between (all)")
