@@ -347,7 +347,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{
             (name, 1): (NODE_ARGUMENT,)
             for names in (
-                "due vague in_way bars goes_on turned_next inexact drawable other_way misgrasped unmoving looks_away",
+                "due vague in_way bars goes_on turned_next drawable other_way misgrasped unmoving looks_away",
                 "in_place end_known minds_doors shuts_in taken_before lets_go pushed_on stays circles",
                 "to_bring formless pressed pressable attained tolerable origin_lost has_end near_end loose_end",
                 "end_open going_to_see probes see_first pressing firm holds",

@@ -244,7 +244,7 @@ class PlanExecutor:
         pushed, self._pushed = self._pushed, None
         drawable = held.moved and pushed is not None and self.pull
         facts = [*resistance(held), f"contacts({name},{self._contacts.get(name, 0)})"]
-        given = {"inexact": held.inexact, "drawable": drawable, "other_way": other_way}
+        given = {"drawable": drawable, "other_way": other_way}
         facts += [f"{fact}({name})" for fact, is_so in given.items() if is_so]
 
         def draw_back(question: Question) -> Act | None:
