@@ -12,29 +12,30 @@ import argparse
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from benchmarks.timing.explaining import decisions
 from utak.kb.language.atoms import atom_parts
-from utak.kb.reasoning.encodings import encoding_facts
-from utak.planner.question import PLANNER_ASP
+from utak.kb.reasoning.encodings import encoding_constant, encoding_facts
+from utak.planner.question import DECIDING_ENCODING, PLANNER_ASP
 
+PRICED = {"explore": "look", "inspect": "look", "pass": "pass", "settle": "settle"}  # by kinds of subgoals
 FactTable = Mapping[str, Sequence[Sequence[str]]]  # the arguments of the facts of each name
-LOOK_PRICES = {"explore": 40, "inspect": 40, "pass": 60, "settle": 200}  # tenths of squares, as in subgoals.lp
-SWITCH = {"subgoal": 30, "way": 200}  # what a switch costs: tenths and hundredths of squares
-RISK_PRICE, FREE_CLEARANCE = 20, 100  # hundredths of squares: for a percent of risk; what costs nothing (walks.lp)
+_SUBGOALS, _WALKS = (partial(encoding_constant, DECIDING_ENCODING / f"{one}.lp") for one in ("subgoals", "walks"))
 
 
 def cheapest_aim(facts: FactTable) -> str:
     """Return the subgoal of the least expected price; one that attains the goal first."""
+    prices = {kind: _SUBGOALS(f"{name}_price") for kind, name in PRICED.items()}
     chances, besides = dict(facts.get("chance", ())), dict(facts.get("besides", ()))
     last = {number for (number,) in facts.get("last", ())} & {aim[0] for aim in facts["aim"]}
 
     def price(aim: Sequence[str]) -> tuple[Any, ...]:
         number, kind, way = aim
-        cost = int(way) + int(besides.get(number, 0)) + LOOK_PRICES.get(kind, 0)
-        switch = SWITCH["subgoal"] if last and number not in last else 0
+        cost = int(way) + int(besides.get(number, 0)) + prices.get(kind, 0)
+        switch = _SUBGOALS("switch_price") if last and number not in last else 0
         return kind != "attain", 100 * cost // int(chances.get(number, 100)) + switch, int(number)
 
     return f"choose({min(facts['aim'], key=price)[0]})"
@@ -58,8 +59,9 @@ def cheapest_way(facts: FactTable) -> str:
 
     def price(way: Sequence[str]) -> tuple[int, int]:
         number, length, clearance, risk = way
-        switch = SWITCH["way"] if last and number not in last else 0
-        return int(length) + RISK_PRICE * int(risk) + max(0, FREE_CLEARANCE - int(clearance)) + switch, int(number)
+        switch = _WALKS("change_price") if last and number not in last else 0
+        squeezed = max(0, _WALKS("free_clearance") - int(clearance))
+        return int(length) + _WALKS("risk_price") * int(risk) + squeezed + switch, int(number)
 
     return f"walked({min(facts['tight'], key=price)[0]})"
 
