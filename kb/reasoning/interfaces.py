@@ -305,7 +305,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         **{(name, 1): (GOAL_ARGUMENT,) for name in ("missing", "unclear")},
         **{(name, 0): () for name in ("own_goals", "regions_forbidden", "stages_attained", "constraints_doubtful")},
         **{(name, 0): () for name in ("hand_unsure", "robot_lost", "unplanned", "map_contradicted")},
-        **{(name, 0): () for name in ("stage_attained", "rules_close_all_doors", "begun")},
+        **{(name, 0): () for name in ("stage_attained", "rules_close_all_doors", "begun", "untold")},
         ("begun", 1): (BEGUN_ARGUMENT,),
         ("undid", 2): (GOAL_ARGUMENT, GOAL_ARGUMENT),
         ("planned", 1): (STEP_ARGUMENT,),
