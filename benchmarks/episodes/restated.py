@@ -35,7 +35,7 @@ def cheapest_aim(facts: FactTable) -> str:
     def price(aim: Sequence[str]) -> tuple[Any, ...]:
         number, kind, way = aim
         cost = int(way) + int(besides.get(number, 0)) + prices.get(kind, 0)
-        switch = _SUBGOALS("switch_price") if last and number not in last else 0
+        switch = _SUBGOALS("aim_switch_price") if last and number not in last else 0
         return kind != "attain", 100 * cost // int(chances.get(number, 100)) + switch, int(number)
 
     return f"choose({min(facts['aim'], key=price)[0]})"
@@ -59,7 +59,7 @@ def cheapest_way(facts: FactTable) -> str:
 
     def price(way: Sequence[str]) -> tuple[int, int]:
         number, length, clearance, risk = way
-        switch = _WALKS("change_price") if last and number not in last else 0
+        switch = _WALKS("way_switch_price") if last and number not in last else 0
         squeezed = max(0, _WALKS("free_clearance") - int(clearance))
         return int(length) + _WALKS("risk_price") * int(risk) + squeezed + switch, int(number)
 

@@ -22,11 +22,7 @@ from utak.planner.deciding.pursuit import end_of
 from utak.planner.deciding.search import contact_subgoals, subgoals_towards
 from utak.planner.deciding.stage_turn import StageTurn
 from utak.planner.deciding.transport import Transporter, push_to_see
-from utak.planner.deciding.verification import (
-    doubts_of_belief,
-    doubts_of_bounds,
-    robot_square,
-)
+from utak.planner.deciding.verification import doubts_of_belief, doubts_of_bounds, robot_square
 from utak.planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
 from utak.planner.goals.joint import is_apart_from_start, too_far_reason
 from utak.planner.goals.placement import to_view_frame

@@ -52,8 +52,11 @@ def rules_that_leave_untold(doubts: Iterable[Doubt], situation: Situation) -> tu
         """Return whether something is left untold in an answer."""
         return any(atom.name == "untold" for atom in atoms)
 
-    question = _asked([doubt for doubt in doubts if len(doubt.look.squares)], situation)
-    return question.blamed(is_untold) if question.rules and is_untold(question.answer("senses") or ()) else ()
+    claimed = [doubt for doubt in doubts if len(doubt.look.squares) and f"claimed({doubt.name})" in doubt.facts]
+    if not claimed or not situation.question.rules:
+        return ()
+    question = _asked(claimed, situation)
+    return question.blamed(is_untold) if is_untold(question.answer("senses") or ()) else ()
 
 
 def _asked(doubts: Collection[Doubt], situation: Situation) -> Question:

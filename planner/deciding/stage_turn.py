@@ -92,7 +92,7 @@ class StageTurn:
             if look.command is not None or sense.doubt.must:
                 self.verifier.telling = sense.doubt.name
                 return look
-            left.remove(sense.doubt)
+            left = [doubt for doubt in left if doubt.name != sense.doubt.name]
         if rules := rules_that_leave_untold(left, situation):
             why = f"{self.stage} cannot be said to hold: {forbidden_by(rules, 'to make sure of that')}"
             return Decision(None, why, TaskVerdict.LIMIT)

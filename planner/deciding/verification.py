@@ -22,7 +22,6 @@ from utak.planner.goals.robot_goals import robot_stands_on
 from utak.planner.navigation.subgoals import Subgoal
 from utak.planner.screen.projection import dilate
 from utak.planner.sights import frontiers
-from utak.planner.sights.frontiers import Viewpoint, viewpoint_of
 from utak.planner.situation import Situation
 from utak.planner.subgoal_kind import SubgoalKind
 
@@ -58,7 +57,7 @@ def doubts_of_belief(nodes: Iterable[Node], situation: Situation) -> Iterator[Do
     model = situation.model
     if model.contradicted:
         what = "what is seen differs from what is believed"
-        yield _claimed("differs", viewpoint_of(situation.cost_maps, robot_square(model), what), situation)
+        yield _claimed("differs", frontiers.viewpoint_of(situation.cost_maps, robot_square(model), what), situation)
     for node in nodes:
         squares = model.mask(node.patch)
         if node.looked_at_again:
@@ -67,10 +66,10 @@ def doubts_of_belief(nodes: Iterable[Node], situation: Situation) -> Iterator[Do
             what = f"{node.name} was not seen closely since looks differed"
         else:
             continue
-        yield _claimed(f"again({node.name})", viewpoint_of(situation.cost_maps, squares, what), situation)
+        yield _claimed(f"again({node.name})", frontiers.viewpoint_of(situation.cost_maps, squares, what), situation)
 
 
-def _claimed(name: str, look: Viewpoint, situation: Situation) -> Doubt:
+def _claimed(name: str, look: frontiers.Viewpoint, situation: Situation) -> Doubt:
     """Return what is open of what goals rest on that are about to count as attained."""
     # What is in hand may shut the robot in: then it is let go.
     must = name == "differs" or situation.model.held is not None
@@ -102,7 +101,7 @@ def doubts_of_bounds(
             return
 
 
-def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Iterator[Viewpoint]:
+def unseen_beyond_door(goal: Fact, began: XY, covered: Bools, situation: Situation) -> Iterator[frontiers.Viewpoint]:
     """Yield where to see how wide the floor is beyond a door, before something is said to be there; nothing if sure."""
     model, view = situation.model, situation.model.view
     if goal.name == "around":

@@ -6,9 +6,8 @@ from tests.encoding_cases import Case, cases_of
 from tests.tables import few
 from utak.planner.question import DECIDING_ENCODING, Question
 
-ALL = [
-    case for case in cases_of(DECIDING_ENCODING) if ":-" not in case.facts
-]  # with rules all parts are solved together
+# Where rules are given, all parts are solved together.
+ALL = [case for case in cases_of(DECIDING_ENCODING) if ":-" not in case.facts]
 # By the parts of the program that make a choice: the predicates that tell it.
 CHOICES = {
     ("activities", "verdicts"): {"do", "stuck", "stage_attained", "suppose", "depends", "verdict"},

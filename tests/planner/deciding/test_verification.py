@@ -22,16 +22,11 @@ from utak.planner.agenda.decider import Decider
 from utak.planner.carrying.infeasibility import Infeasibility
 from utak.planner.carrying.manipulation_oracle import ManipulationOracle, Request
 from utak.planner.carrying.open_facts import open_facts
-from utak.planner.carrying.preconditions import doubt_of_frame, sensed_first
+from utak.planner.carrying.preconditions import Doubt, doubt_of_frame, sensed_first
 from utak.planner.deciding.transport import Transporter
-from utak.planner.deciding.verification import (
-    Verifier,
-    doubts_of_belief,
-    doubts_of_bounds,
-    unseen_beyond_door,
-)
+from utak.planner.deciding.verification import Verifier, doubts_of_belief, doubts_of_bounds, unseen_beyond_door
 from utak.planner.goals.bounds import unfelt_bounds
-from utak.planner.sights.frontiers import FOVEA_RANGE
+from utak.planner.sights.frontiers import FOVEA_RANGE, Viewpoint
 from utak.planner.stages import Stage
 
 IN_NEXT_ROOM, THROUGH_A_DOOR, AROUND_A_CORNER = facts_from_text(
@@ -145,6 +140,14 @@ def test_what_others_may_have_moved_is_looked_at_again(again: bool) -> None:
     found = [*doubts_of_belief([node], situation_of(replace(model, objects=(node,))))]
     assert bool(found) == again
     assert all(f"others may have moved {node.name}" in doubt.look.what for doubt in found)
+
+
+def test_what_two_goals_rest_on_and_cannot_be_seen_is_given_up_once() -> None:
+    situation = situation_of(known_model(BESIDE_A_THING))
+    unreached = [Doubt("again(o1)", Viewpoint(np.array([0, one]), "it"), ("claimed(again(o1))",)) for one in (1, 2)]
+    decision = turn_of(Stage(()), situation).make_sure(unreached)
+    assert not decision
+    assert decision.verdict is None
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
