@@ -97,7 +97,7 @@ ACTIVITIES: Forms = {  # of the agenda, first those about nothing in particular
 }
 ACTIVITY_ARGUMENT = compound_argument("activity", "activities", ACTIVITIES)
 DOUBTS: Forms = {  # what steps rest on
-    **dict.fromkeys(("kind", "outline", "extent", "way", "again"), (NODE_ARGUMENT,)),
+    **dict.fromkeys(("kind", "outline", "extent", "way", "surroundings", "again"), (NODE_ARGUMENT,)),
     "bounds": (PARAMETER_ARGUMENT,),
     **dict.fromkeys(("frame", "differs"), ()),
 }

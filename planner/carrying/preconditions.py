@@ -6,10 +6,12 @@ Geometry says here what is open and from where it is told; planner/asp/deciding/
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
-from utak.kb.world.model import Node, WorldModel
+from utak.kb.mapping.occupancy import OPEN
+from utak.kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from utak.planner.carrying.manipulation_oracle import ManipulationPlan
 from utak.planner.question import Atoms, Question, argument
 from utak.planner.screen.moves import orientation_is_uncertain
+from utak.planner.screen.projection import dilate
 from utak.planner.sights.frontiers import Viewpoint, rim_viewpoint, touch_viewpoint, viewpoint_of
 from utak.planner.sights.viewpoints import TO_TAKE, inspection
 from utak.planner.situation import Situation
@@ -17,6 +19,7 @@ from utak.planner.situation import Situation
 PLACE_SLACK = 0.02  # squares by which the robot may stand elsewhere in its square before a turn needs more room; tuned
 TURN_COST_OPEN_FRAME = 2.5  # commands that a turn counts for while the orientation of the frame is open; tuned
 TURN_COST_OPEN_PLACE = 1.5  # commands that it counts for while the place within the square is open; tuned
+DETOUR_ROOM = 2  # squares beside the way of a long plan within which more room would help; tuned
 
 
 class Doubt(NamedTuple):
@@ -88,13 +91,19 @@ def _doubt_of_extent(node: Node, facts: tuple[str, ...], situation: Situation) -
 
 
 def doubts_of_way(found: ManipulationPlan, node: Node, situation: Situation) -> Iterator[Doubt]:
-    """Yield whether the way of a plan is free, where that is open."""
-    name = node.name
-    unsure = found.swept & ~situation.cost_maps.free(0) & ~situation.model.mask(node.patch)
-    if unsure.any() and not found.hopes:
-        facts = (f"commands({name},{found.plan.commands})", *[f"goes_on({name})"] * found.plan.goes_on)
-        what = f"it is not clear whether the way for {name} is free"
-        yield Doubt(f"way({name})", viewpoint_of(situation.cost_maps, unsure, what), facts)
+    """Yield what is open of the way of a plan, and beside it."""
+    model, name = situation.model, node.name
+    if found.hopes:
+        return
+    apart = ~model.mask(node.patch)
+    unsure = found.swept & ~situation.cost_maps.free(0) & apart
+    hardly_free = (model.view.state == OPEN) & (model.view.probability > MAX_FREE_PROBABILITY)
+    beside = dilate(found.swept, DETOUR_ROOM) & hardly_free & apart
+    facts = (f"commands({name},{found.plan.commands})", *[f"goes_on({name})"] * found.plan.goes_on)
+    what = f"it is not clear whether the way for {name} is free"
+    for doubt, mask in (("way", unsure), ("surroundings", unsure | beside)):
+        if mask.any():
+            yield Doubt(f"{doubt}({name})", viewpoint_of(situation.cost_maps, mask, what), facts)
 
 
 def doubts_of_obstacles(found: ManipulationPlan, situation: Situation) -> Iterator[Doubt]:

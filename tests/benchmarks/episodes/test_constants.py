@@ -19,7 +19,7 @@ def test_a_constant_is_replaced_in_what_is_solved() -> None:
 
 def test_each_constant_of_the_planner_has_a_value() -> None:
     known = constants()
-    assert {"few_looks", "most_contacts", "price_of_measure"} <= known.keys()
+    assert {"long_plan", "most_contacts", "price_of_measure"} <= known.keys()
     assert all(low < value < high for value in known.values() for low, high in [neighbours(value)])
 
 

@@ -27,6 +27,7 @@ from utak.planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from utak.planner.deciding.transport import Transporter
 from utak.planner.decision import TaskVerdict
 from utak.planner.goals.placement import Placement
+from utak.planner.sights.frontiers import FOVEA_RANGE
 from utak.planner.situation import Situation
 from utak.planner.stages import Stage
 
@@ -176,13 +177,27 @@ def test_an_object_that_would_be_grasped_again_from_here_is_not_released(aside: 
     assert advice.command == (Push(10.0, 0.0) if goes_on else Release())
 
 
-@pytest.mark.parametrize("pushes", [3, 8])
-@pytest.mark.parametrize("taken", [False, True])
-def test_a_held_object_is_not_released_to_look_at_its_way(pushes: int, taken: bool) -> None:
+@pytest.mark.parametrize(("pushes", "chance", "looks"), [(7, 0.9, True), (3, 0.9, False), (7, 0.05, False)])
+def test_a_square_that_narrows_the_way_of_a_long_plan_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
+    situation = doubtful(beside(()), 8.5, 3.5, chance)
+    view, (node,) = situation.model.view, situation.model.objects
+    sense = sensed_first(doubts_of_way(plan_over(situation, 8.5, 1.5, pushes), node, situation), situation)
+    assert (sense is not None) == looks
+    if sense is not None:
+        assert sense.doubt.name == f"surroundings({node.name})"
+        place = view.locate(8.5, 3.5)
+        rows, columns = np.divmod(sense.doubt.look.squares, view.state.shape[1])
+        assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= FOVEA_RANGE
+
+
+@pytest.mark.parametrize(("pushes", "taken", "looks"), [(3, False, True), (3, True, False), (8, True, True)])
+def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
+    pushes: int, taken: bool, looks: bool
+) -> None:
     situation = doubtful(beside(()), 8.5, 1.5, 0.2)
     (node,) = situation.model.objects
     plan = plan_over(situation, 8.5, 1.5, pushes, taken)
-    assert (sensed_first(doubts_of_way(plan, node, situation), situation) is None) == taken
+    assert (sensed_first(doubts_of_way(plan, node, situation), situation) is not None) == looks
 
 
 @pytest.mark.parametrize(
